@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bot2nurbs/context.h"
+#include "bot2nurbs/spline_network.h"
+#include "bot2nurbs/surface_samples.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace bot2nurbs {
+
+//! What a fit round minimises.
+enum class DistanceRows {
+    point,   //!< |S(u, v) - p|^2 (Eck and Hoppe 1996); one factorisation for x, y and z.
+    tangent, //!< (n . (S(u, v) - p))^2 with a small point-distance part: converges much faster.
+};
+
+struct FitOptions {
+    int max_rounds = 8;     //!< Solves, each but the first after parameter correction; at least 5.
+    double fairness = 1e-4; //!< Weight of the thin-plate energy in the first round, dimensionless.
+    double fairness_floor = 1e-6; //!< The weight falls by sqrt(10) a round down to this.
+    DistanceRows rows = DistanceRows::tangent;
+    bool robust = false; //!< Iteratively reweighted least squares (Huber) against outliers.
+    double stall = 0.02; //!< Stop when a round lowers the rms error by less than this share.
+
+    std::optional<Error> check() const;
+};
+
+//! One round as measured after its solve, at the corrected parameters. Distances in units of the
+//! samples.
+struct FitRound {
+    double rms = 0.0, max = 0.0;
+    double fairness = 0.0;
+    double damping = 0.0; //!< Point-distance part of tangent-distance rows.
+    Index crossed = 0;    //!< Samples whose foot point moved to another patch.
+    double seconds = 0.0;
+};
+
+struct FitSummary {
+    std::vector<FitRound> rounds;
+    Index unknowns = 0; //!< After elimination of the constraints.
+    Index samples = 0;
+    double condition = 0.0;     //!< Estimate for the (scaled) normal matrix.
+    bool used_fallback = false; //!< The augmented or QR solve was needed.
+    std::string termination;    //!< "stalled" or "round_limit".
+};
+
+struct FitResult {
+    std::vector<Vec3> unknowns; //!< Satisfy the constraint rows to rounding.
+    SplineSurface surface;
+    FitSummary summary;
+};
+
+//! Fits all patches at once: least squares over the samples, exact thin-plate fairness, constraints
+//! eliminated exactly, alternating with closest-point parameter correction that walks over patch
+//! edges. `samples.domain` is updated. Same result for any thread count.
+//! Errors: bad_option, empty_input, fit_failed, cancelled.
+Result<FitResult> fit_network(const SplineNetwork &network, SurfaceSampleSet &samples,
+                              const FitOptions &options, Context &context);
+
+} // namespace bot2nurbs

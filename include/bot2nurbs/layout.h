@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bot2nurbs/quad_domain.h"
+
+#include <optional>
+
+namespace bot2nurbs {
+
+struct LayoutOptions {
+    std::optional<Index> patches; //!< Wanted number of quads; by default chosen from the shape.
+    std::uint64_t seed = 0; //!< Reserved for tie-breaking experiments; results are deterministic.
+};
+
+//! What the automatic layout did, for the report.
+struct LayoutSummary {
+    Index sites = 0;       //!< Voronoi sites after the conditions hold.
+    Index sites_added = 0; //!< Of these, added because a condition failed.
+    Index target_patches = 0;
+    Index uniform_maps = 0;  //!< Charts that needed uniform weights.
+    Index exact_maps = 0;    //!< Charts that needed the exact fallback.
+    bool subdivided = false; //!< The triangle-to-three-quads fallback was used.
+    std::vector<std::string> notes;
+};
+
+struct LayoutResult {
+    QuadDomain domain;
+    LayoutSummary summary;
+};
+
+//! The automatic layout of one closed connected mesh (Eck et al. 1995, Eck and Hoppe 1996).
+//! Errors: open_mesh, layout_failed, cancelled.
+Result<LayoutResult> build_layout(const ManifoldMesh &source, const LayoutOptions &options,
+                                  Context &context);
+
+} // namespace bot2nurbs

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bot2nurbs/quad_complex.h"
+#include "bot2nurbs/surface_samples.h"
+#include "bot2nurbs/vec.h"
+
+#include <string>
+#include <vector>
+
+namespace bot2nurbs {
+
+//! Rows of a sparse matrix: row r has entries offset[r] .. offset[r + 1] - 1, columns ascending.
+struct SparseRows {
+    std::vector<std::size_t> offset{0};
+    std::vector<Index> column;
+    std::vector<double> weight;
+
+    Index row_count() const { return static_cast<Index>(offset.size() - 1); }
+};
+
+//! Which spline space a network uses.
+enum class SplineScheme {
+    peters,    //!< C1 inside every macro patch, exact G1 across edges; the default.
+    eck_hoppe, //!< The masks of Eck and Hoppe 1996; closed smooth domains only.
+};
+
+//! A spline space over a quadrilateral domain, as data: every Bezier coefficient of every patch is
+//! a fixed combination of global unknowns, and smoothness holds for all unknowns that satisfy the
+//! constraint rows. Nothing to the right of this header knows which scheme it is.
+//!
+//! Each quad carries a 13 x 13 Bezier grid: 4 x 4 bicubic pieces over [0, 4]^2, neighbours sharing
+//! their border coefficients. Coefficient (i, j), i along u, j along v, of quad q is stencil row
+//! 169 q + 13 i + j.
+struct SplineNetwork {
+    SplineScheme scheme = SplineScheme::peters;
+    QuadComplex complex;
+    Index unknown_count = 0;
+    std::vector<char>
+        is_point;        //!< Per unknown: 1 affine weight one (a point), 0 weight zero (a vector).
+    SparseRows stencils; //!< 169 rows per quad.
+    SparseRows constraints; //!< Rows that must vanish on the unknowns; disjoint supports.
+    bool c1_inside =
+        true; //!< True: the 10 x 10 form with double knots represents the patches exactly.
+
+    static constexpr Index grid = 13;
+    static Index row(Index quad, Index i, Index j) { return 169 * quad + 13 * i + j; }
+};
+
+//! Builds the network of a scheme. Errors: invalid_domain (a valence below 3 inside, or a domain
+//! the scheme does not cover), naming the vertex. \cite peters_1994 \cite eck_hoppe_1996
+Result<SplineNetwork> build_spline_network(const QuadComplex &complex, SplineScheme scheme);
+
+//! Position and derivatives of a surface at one parameter, with respect to u, v in [0, 1].
+struct SurfacePoint {
+    Vec3 position, du, dv, duu, duv, dvv;
+};
+
+//! A spline surface: the Bezier grids that a network's stencils give for values of the unknowns.
+class SplineSurface {
+public:
+    SplineSurface() = default;
+    //! Applies the stencils. `unknowns` has network.unknown_count entries. Coefficients that two
+    //! patches share are computed once and copied, so they agree to the bit.
+    SplineSurface(const SplineNetwork &network, const std::vector<Vec3> &unknowns);
+
+    Index patch_count() const { return static_cast<Index>(bezier_.size() / 169); }
+    //! Bezier coefficient (i, j) of a patch, 0 <= i, j <= 12.
+    const Vec3 &bezier(Index patch, Index i, Index j) const
+    {
+        return bezier_[169 * patch + 13 * i + j];
+    }
+    const std::vector<Vec3> &bezier() const { return bezier_; }
+    std::vector<Vec3> &bezier() { return bezier_; }
+    Vec3 position(const DomainPoint &p) const;
+    SurfacePoint evaluate(const DomainPoint &p) const;
+    //! Scales all coefficients about the origin, then moves them: undoes the normalisation of
+    //! input.
+    void transform(double scale, const Vec3 &offset);
+
+private:
+    std::vector<Vec3> bezier_;
+};
+
+//! The knots a B-spline patch is written with.
+enum class KnotForm {
+    paper, //!< 12 x 12 control points, knots of Eck and Hoppe (triple at 1 and 3, double at 2).
+    c1,    //!< 10 x 10 control points, double knots: the same surface where c1_inside holds.
+};
+
+//! One bicubic B-spline patch: order 4, control point (i, j) at control[i * size + j].
+struct BsplinePatch {
+    Index size = 0;            //!< Control points per direction: 12 or 10.
+    std::vector<double> knots; //!< openNURBS convention: size + 2 knots on [0, 4].
+    std::vector<Vec3> control;
+};
+
+//! The B-spline form of a patch: a selection of its Bezier coefficients. \pre form is
+//! representable.
+BsplinePatch bspline_patch(const SplineSurface &surface, Index patch, KnotForm form);
+
+//! Continuity measured along every smooth edge of a network: the largest distance between the two
+//! sides' positions (0 by construction), and the largest angle in degrees between their normals.
+struct Continuity {
+    double max_gap = 0.0;
+    double max_g1_angle_deg = 0.0;
+    Index worst_edge = invalid_index;
+    Index crease_edges = 0;
+};
+//! `samples` parameters per Bezier piece and edge, both ends included.
+Continuity measure_continuity(const QuadComplex &complex, const SplineSurface &surface,
+                              Index samples = 9);
+
+} // namespace bot2nurbs

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bot2nurbs/manifold_mesh.h"
+
+#include <vector>
+
+namespace bot2nurbs {
+
+//! A place in a quadrilateral domain: a quad and parameters in [0, 1]^2; u runs from corner 0 to
+//! corner 1, v from corner 0 to corner 3.
+struct DomainPoint {
+    Index quad = invalid_index;
+    double u = 0.0, v = 0.0;
+};
+
+//! The data a spline network is fitted to: one entry of every array per sample.
+struct SurfaceSampleSet {
+    std::vector<Vec3> positions;
+    std::vector<Vec3> normals;       //!< Unit normals of the source; empty when unknown.
+    std::vector<double> weights;     //!< Confidence times the area the sample stands for; > 0.
+    std::vector<SourcePoint> source; //!< Where on the source mesh.
+    std::vector<DomainPoint> domain; //!< Where in the domain (changes with parameter correction).
+
+    std::size_t size() const { return positions.size(); }
+};
+
+} // namespace bot2nurbs
