@@ -76,7 +76,7 @@ struct Brep {
 //! One face per patch over its whole parameter rectangle, one edge per domain edge with the curve
 //! both patches share, one vertex per domain vertex: requirements section 5.
 //! Errors: brep_failed when check_brep finds a defect.
-Result<Brep> assemble_brep(const QuadComplex &complex, const SplineSurface &surface, KnotForm form);
+Result<Brep> assemble_brep(const QuadComplex& complex, const SplineSurface& surface, KnotForm form);
 
 //! One violated rule: what and which element of which array.
 struct BrepDefect {
@@ -95,6 +95,6 @@ struct BrepReport {
     double volume = 0.0;       //!< Signed, exact for the surfaces up to rounding; 0 when open.
     std::vector<BrepDefect> defects;
 };
-BrepReport check_brep(const Brep &brep);
+BrepReport check_brep(const Brep& brep);
 
 } // namespace bot2nurbs

@@ -25,8 +25,8 @@ struct StageRecord {
 //! `cancelled()` at least every 50 ms and then return ErrorCode::cancelled.
 class Context {
 public:
-    using ProgressSink = std::function<void(const std::string &stage, double fraction)>;
-    using LogSink = std::function<void(LogLevel, const std::string &message)>;
+    using ProgressSink = std::function<void(const std::string& stage, double fraction)>;
+    using LogSink = std::function<void(LogLevel, const std::string& message)>;
 
     ProgressSink on_progress; //!< Called from the calling thread only; may be empty.
     LogSink on_log;           //!< May be empty.
@@ -35,20 +35,20 @@ public:
     void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
     bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
     //! The error a cancelled stage returns.
-    static Error cancelled_error(const std::string &stage)
+    static Error cancelled_error(const std::string& stage)
     {
         return {ErrorCode::cancelled, "cancelled during " + stage, invalid_index};
     }
 
     //! Starts a stage and ends the one before.
-    void begin_stage(const std::string &name);
+    void begin_stage(const std::string& name);
     //! Ends the current stage, if any.
     void end_stage();
     //! Reports the fraction in [0, 1] of the current stage.
     void progress(double fraction);
-    void log(LogLevel level, const std::string &message) const;
+    void log(LogLevel level, const std::string& message) const;
 
-    const std::vector<StageRecord> &stages() const { return stages_; }
+    const std::vector<StageRecord>& stages() const { return stages_; }
 
 private:
     std::atomic<bool> cancelled_{false};

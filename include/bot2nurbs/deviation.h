@@ -32,7 +32,7 @@ struct Deviation {
 };
 
 //! Cost O((F + samples) log F). Errors: cancelled.
-Result<Deviation> measure_deviation(const ManifoldMesh &source, const QuadComplex &complex,
-                                    const SplineSurface &surface, Context &context);
+Result<Deviation> measure_deviation(const ManifoldMesh& source, const QuadComplex& complex,
+                                    const SplineSurface& surface, Context& context);
 
 } // namespace bot2nurbs

@@ -57,7 +57,7 @@ struct FitResult {
 //! eliminated exactly, alternating with closest-point parameter correction that walks over patch
 //! edges. `samples.domain` is updated. Same result for any thread count.
 //! Errors: bad_option, empty_input, fit_failed, cancelled.
-Result<FitResult> fit_network(const SplineNetwork &network, SurfaceSampleSet &samples,
-                              const FitOptions &options, Context &context);
+Result<FitResult> fit_network(const SplineNetwork& network, SurfaceSampleSet& samples,
+                              const FitOptions& options, Context& context);
 
 } // namespace bot2nurbs

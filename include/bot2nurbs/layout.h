@@ -30,7 +30,7 @@ struct LayoutResult {
 
 //! The automatic layout of one closed connected mesh (Eck et al. 1995, Eck and Hoppe 1996).
 //! Errors: open_mesh, layout_failed, cancelled.
-Result<LayoutResult> build_layout(const ManifoldMesh &source, const LayoutOptions &options,
-                                  Context &context);
+Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOptions& options,
+                                  Context& context);
 
 } // namespace bot2nurbs

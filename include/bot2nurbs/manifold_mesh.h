@@ -45,10 +45,10 @@ public:
     Index halfedge_count() const { return 3 * face_count(); }
     Index edge_count() const { return edge_count_; }
 
-    const std::vector<Vec3> &positions() const { return positions_; }
-    const std::vector<std::array<Index, 3>> &triangles() const { return triangles_; }
-    const Vec3 &position(Index v) const { return positions_[v]; }
-    const std::array<Index, 3> &triangle(Index f) const { return triangles_[f]; }
+    const std::vector<Vec3>& positions() const { return positions_; }
+    const std::vector<std::array<Index, 3>>& triangles() const { return triangles_; }
+    const Vec3& position(Index v) const { return positions_[v]; }
+    const std::array<Index, 3>& triangle(Index f) const { return triangles_[f]; }
 
     static Index face(Index h) { return h / 3; }
     static Index next(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
@@ -67,16 +67,16 @@ public:
     Index find_halfedge(Index a, Index b) const;
 
     bool closed() const { return boundary_halfedges_ == 0; }
-    Vec3 at(const SourcePoint &p) const
+    Vec3 at(const SourcePoint& p) const
     {
-        const auto &t = triangles_[p.face];
+        const auto& t = triangles_[p.face];
         return p.bary[0] * positions_[t[0]] + p.bary[1] * positions_[t[1]] +
                p.bary[2] * positions_[t[2]];
     }
     //! Twice the area vector of a face.
     Vec3 area_vector(Index f) const
     {
-        const auto &t = triangles_[f];
+        const auto& t = triangles_[f];
         return cross(positions_[t[1]] - positions_[t[0]], positions_[t[2]] - positions_[t[0]]);
     }
     Box3 box() const;
@@ -97,6 +97,6 @@ private:
 //! 16 hexadecimal digits that depend on every coordinate and index of the mesh (FNV-1a, 64 bit,
 //! over the little-endian bytes). Domain and constraint files carry it, so that a file made for
 //! another mesh is refused.
-std::string signature(const ManifoldMesh &mesh);
+std::string signature(const ManifoldMesh& mesh);
 
 } // namespace bot2nurbs

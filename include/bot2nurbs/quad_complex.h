@@ -33,8 +33,8 @@ public:
     Index quad_count() const { return static_cast<Index>(quads_.size()); }
     Index halfedge_count() const { return 4 * quad_count(); }
     Index edge_count() const { return static_cast<Index>(edges_.size()); }
-    const std::array<Index, 4> &quad(Index q) const { return quads_[q]; }
-    const std::vector<std::array<Index, 4>> &quads() const { return quads_; }
+    const std::array<Index, 4>& quad(Index q) const { return quads_[q]; }
+    const std::vector<std::array<Index, 4>>& quads() const { return quads_; }
 
     static Index quad_of(Index h) { return h / 4; }
     static Index side_of(Index h) { return h % 4; }

@@ -39,7 +39,7 @@ struct CarrierMesh {
     bool refined = false;                   //!< False: the carrier is the source itself.
 
     //! The source mesh as its own carrier.
-    static CarrierMesh from_source(const ManifoldMesh &source);
+    static CarrierMesh from_source(const ManifoldMesh& source);
 };
 
 //! A quadrilateral domain K with its map to the source mesh M0: vertices are carrier vertices,
@@ -71,7 +71,7 @@ struct QuadChart {
 //! Charts of all quads, each proved injective: every overlay triangle is positively oriented in uv,
 //! decided exactly. Charts of neighbours agree along their common side. Errors: layout_failed
 //! naming the quad, cancelled. Same result for any thread count.
-Result<std::vector<QuadChart>> compute_charts(const ManifoldMesh &source, const QuadDomain &domain,
-                                              Context &context);
+Result<std::vector<QuadChart>> compute_charts(const ManifoldMesh& source, const QuadDomain& domain,
+                                              Context& context);
 
 } // namespace bot2nurbs

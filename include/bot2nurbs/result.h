@@ -47,7 +47,7 @@ struct Error {
 int exit_code(ErrorCode code);
 
 //! Short stable name of an error code, as used in reports ("not_manifold").
-const char *name(ErrorCode code);
+const char* name(ErrorCode code);
 
 //! A value, or the reason why there is none.
 template <class T> class [[nodiscard]] Result {
@@ -59,23 +59,23 @@ public:
     explicit operator bool() const { return ok(); }
 
     //! \pre ok()
-    T &value()
+    T& value()
     {
         assert(ok());
         return std::get<0>(data_);
     }
-    const T &value() const
+    const T& value() const
     {
         assert(ok());
         return std::get<0>(data_);
     }
-    T &operator*() { return value(); }
-    const T &operator*() const { return value(); }
-    T *operator->() { return &value(); }
-    const T *operator->() const { return &value(); }
+    T& operator*() { return value(); }
+    const T& operator*() const { return value(); }
+    T* operator->() { return &value(); }
+    const T* operator->() const { return &value(); }
 
     //! \pre !ok()
-    const Error &error() const
+    const Error& error() const
     {
         assert(!ok());
         return std::get<1>(data_);

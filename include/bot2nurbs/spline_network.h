@@ -49,7 +49,7 @@ struct SplineNetwork {
 
 //! Builds the network of a scheme. Errors: invalid_domain (a valence below 3 inside, or a domain
 //! the scheme does not cover), naming the vertex. \cite peters_1994 \cite eck_hoppe_1996
-Result<SplineNetwork> build_spline_network(const QuadComplex &complex, SplineScheme scheme);
+Result<SplineNetwork> build_spline_network(const QuadComplex& complex, SplineScheme scheme);
 
 //! Position and derivatives of a surface at one parameter, with respect to u, v in [0, 1].
 struct SurfacePoint {
@@ -62,21 +62,21 @@ public:
     SplineSurface() = default;
     //! Applies the stencils. `unknowns` has network.unknown_count entries. Coefficients that two
     //! patches share are computed once and copied, so they agree to the bit.
-    SplineSurface(const SplineNetwork &network, const std::vector<Vec3> &unknowns);
+    SplineSurface(const SplineNetwork& network, const std::vector<Vec3>& unknowns);
 
     Index patch_count() const { return static_cast<Index>(bezier_.size() / 169); }
     //! Bezier coefficient (i, j) of a patch, 0 <= i, j <= 12.
-    const Vec3 &bezier(Index patch, Index i, Index j) const
+    const Vec3& bezier(Index patch, Index i, Index j) const
     {
         return bezier_[169 * patch + 13 * i + j];
     }
-    const std::vector<Vec3> &bezier() const { return bezier_; }
-    std::vector<Vec3> &bezier() { return bezier_; }
-    Vec3 position(const DomainPoint &p) const;
-    SurfacePoint evaluate(const DomainPoint &p) const;
+    const std::vector<Vec3>& bezier() const { return bezier_; }
+    std::vector<Vec3>& bezier() { return bezier_; }
+    Vec3 position(const DomainPoint& p) const;
+    SurfacePoint evaluate(const DomainPoint& p) const;
     //! Scales all coefficients about the origin, then moves them: undoes the normalisation of
     //! input.
-    void transform(double scale, const Vec3 &offset);
+    void transform(double scale, const Vec3& offset);
 
 private:
     std::vector<Vec3> bezier_;
@@ -97,7 +97,7 @@ struct BsplinePatch {
 
 //! The B-spline form of a patch: a selection of its Bezier coefficients. \pre form is
 //! representable.
-BsplinePatch bspline_patch(const SplineSurface &surface, Index patch, KnotForm form);
+BsplinePatch bspline_patch(const SplineSurface& surface, Index patch, KnotForm form);
 
 //! Continuity measured along every smooth edge of a network: the largest distance between the two
 //! sides' positions (0 by construction), and the largest angle in degrees between their normals.
@@ -108,7 +108,7 @@ struct Continuity {
     Index crease_edges = 0;
 };
 //! `samples` parameters per Bezier piece and edge, both ends included.
-Continuity measure_continuity(const QuadComplex &complex, const SplineSurface &surface,
+Continuity measure_continuity(const QuadComplex& complex, const SplineSurface& surface,
                               Index samples = 9);
 
 } // namespace bot2nurbs

@@ -23,7 +23,7 @@ double peak_rss_mib()
 
 } // namespace
 
-void Context::begin_stage(const std::string &name)
+void Context::begin_stage(const std::string& name)
 {
     end_stage();
     stage_ = name;
@@ -46,7 +46,7 @@ void Context::progress(double fraction)
         on_progress(stage_, fraction);
 }
 
-void Context::log(LogLevel level, const std::string &message) const
+void Context::log(LogLevel level, const std::string& message) const
 {
     if (on_log)
         on_log(level, message);

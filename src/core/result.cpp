@@ -26,7 +26,7 @@ int exit_code(ErrorCode code)
     return 1;
 }
 
-const char *name(ErrorCode code)
+const char* name(ErrorCode code)
 {
     switch (code) {
     case ErrorCode::internal: return "internal";
