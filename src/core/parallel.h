@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bot2nurbs/context.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+namespace bot2nurbs {
+
+//! Runs body(begin, end) over [0, count) in chunks of fixed size, on as many threads as the context
+//! allows. Chunk borders depend on `count` and `chunk` alone, so a result stored per chunk and
+//! combined in chunk order is the same for any thread count.
+//!
+//! \return false when the context was cancelled: some chunks may not have run. Polled before every
+//! chunk, so a chunk should take well under 50 ms.
+template <class Body>
+bool for_each_chunk(const Context &context, std::size_t count, std::size_t chunk, const Body &body)
+{
+    const std::size_t chunks = (count + chunk - 1) / chunk;
+    const auto run = [&](std::size_t c) {
+        if (!context.cancelled())
+            body(c * chunk, std::min(count, (c + 1) * chunk));
+    };
+    if (context.threads == 1 || chunks <= 1) {
+        for (std::size_t c = 0; c < chunks; ++c)
+            run(c);
+    } else {
+        oneapi::tbb::task_arena arena(context.threads == 0 ? oneapi::tbb::task_arena::automatic
+                                                           : static_cast<int>(context.threads));
+        arena.execute([&] {
+            oneapi::tbb::parallel_for(
+                oneapi::tbb::blocked_range<std::size_t>(0, chunks, 1),
+                [&](const oneapi::tbb::blocked_range<std::size_t> &range) {
+                    for (std::size_t c = range.begin(); c != range.end(); ++c)
+                        run(c);
+                },
+                oneapi::tbb::simple_partitioner());
+        });
+    }
+    return !context.cancelled();
+}
+
+} // namespace bot2nurbs
