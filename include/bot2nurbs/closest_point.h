@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bot2nurbs/manifold_mesh.h"
+
+#include <memory>
+
+namespace bot2nurbs {
+
+//! Closest points on the surface of a mesh, over a box tree of its triangles.
+//!
+//! Keeps what it needs of the mesh. Queries cost O(log F) in practice and may run on many threads
+//! at once. Building costs O(F log F).
+class ClosestPoint {
+public:
+    explicit ClosestPoint(const ManifoldMesh& mesh);
+
+    struct Hit {
+        SourcePoint where; //!< where.face is invalid_index when nothing lies within the limit.
+        Vec3 position;
+        double distance = 0.0;
+    };
+
+    //! The closest point; of several equally close triangles the one with the smallest index.
+    Hit query(const Vec3& p) const;
+    //! The closest point at most `distance_limit` away. Faster the smaller the limit.
+    Hit query(const Vec3& p, double distance_limit) const;
+
+private:
+    struct Tree;
+    std::shared_ptr<const Tree> tree_;
+};
+
+} // namespace bot2nurbs
