@@ -74,27 +74,39 @@ struct Brep {
 };
 
 //! One face per patch over its whole parameter rectangle, one edge per domain edge with the curve
-//! both patches share, one vertex per domain vertex: requirements section 5.
-//! Errors: brep_failed when check_brep finds a defect.
+//! both patches share, one vertex per domain vertex. Face, edge and vertex numbers are those of the
+//! quads, edges and vertices of the complex. A closed B-Rep whose normals point inward gets all its
+//! faces reversed, so that the result is outward.
+//! Errors: brep_failed when two patches disagree on a shared border, or when check_brep finds a
+//! defect; bad_option when the complex and the surface differ in size.
 Result<Brep> assemble_brep(const QuadComplex& complex, const SplineSurface& surface, KnotForm form);
 
 //! One violated rule: what and which element of which array.
 struct BrepDefect {
-    std::string rule; //!< Stable name, such as "trim_iso" or "edge_has_two_trims".
+    std::string rule; //!< Stable name, such as "trim_iso" or "mated_orientation".
     std::string message;
     Index element = invalid_index;
 };
 
 //! What openNURBS' IsValid and IsSolid and BRL-CAD's ON_Brep_Quality_Check look at.
 struct BrepReport {
-    bool valid = false;
-    bool solid = false;
+    bool valid = false; //!< No defects.
+    bool solid = false; //!< Valid, closed, consistently oriented, normals outward.
     Index boundary_edges = 0;
     Index nonmanifold_edges = 0;
-    double max_edge_gap = 0.0; //!< Largest distance between an edge curve and its faces' sides.
-    double volume = 0.0;       //!< Signed, exact for the surfaces up to rounding; 0 when open.
+    Index components = 0;         //!< Sets of faces connected over edges.
+    int euler_characteristic = 0; //!< V - E + F.
+    double max_edge_gap = 0.0;    //!< Largest distance between an edge curve and its faces' sides.
+    double volume = 0.0;          //!< Signed, exact for the surfaces up to rounding; 0 when open.
     std::vector<BrepDefect> defects;
+    std::vector<BrepDefect> warnings; //!< Worth telling, no reason to refuse.
+
+    //! Sum of the genera of a closed B-Rep's components. \pre valid and closed
+    int genus() const { return static_cast<int>(components) - euler_characteristic / 2; }
 };
+
+//! Looks at every rule of docs/formats/brep_checks.md. Never fails: a B-Rep with indices out of
+//! range gets those defects alone. Cost O(n log n) and one evaluation of every patch.
 BrepReport check_brep(const Brep& brep);
 
 } // namespace bot2nurbs
