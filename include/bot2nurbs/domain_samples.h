@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bot2nurbs/quad_domain.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace bot2nurbs {
+
+//! How densely the source is sampled through its charts.
+struct SampleOptions {
+    //! Grid samples of a quad per direction, at least 4: 12 puts 3 x 3 into each of its 4 x 4
+    //! Bezier pieces, so that no piece is without data whatever the mesh.
+    Index per_side = 12;
+    //! Source vertices of a quad that become samples too, so that detail finer than the grid is
+    //! seen; beyond this number they are thinned evenly. 0: none.
+    Index max_vertices = 288;
+    //! Dihedral angle in degrees, 0 to 180: across an edge that turns more, normals are not
+    //! averaged.
+    double smooth_angle = 40.0;
+
+    std::optional<Error> check() const;
+};
+
+//! Samples of the source from all over its faces, with their first place in the domain: for each
+//! quad a grid over (u, v), at cell midpoints so that quads do not repeat each other's sides, then
+//! its source vertices (a vertex on a side counts for the quad of smallest index).
+//!
+//! 1. positions[i] == source.at(source_point[i]) to the bit; the charts place it at domain[i].
+//! 2. Every Bezier piece has at least floor(per_side / 4)^2 samples.
+//! 3. Weights are positive; those of a quad sum to its area (up to rounding): a grid sample stands
+//!    for the area of its cell, a vertex for a third of the triangles around it, and both kinds
+//!    share the area by their numbers.
+//! 4. Normals are unit: the average of the corner normals of the face, themselves averages by angle
+//!    over the faces around a vertex that are not separated by an edge sharper than smooth_angle;
+//!    so they follow a smooth shape, and keep to the flat sides of a sharp one. Where that average
+//!    turns away from the face, the face's own normal.
+//! 5. The same for any thread count.
+//!
+//! Cost linear in charts and samples. Errors: bad_option, invalid_domain (naming a quad whose chart
+//! is empty), cancelled.
+Result<SurfaceSampleSet> make_samples(const ManifoldMesh& source,
+                                      const std::vector<QuadChart>& charts,
+                                      const SampleOptions& options, Context& context);
+
+//! Unit normals of the three corners of every face, at 3 f + k, as make_samples uses them.
+std::vector<Vec3> corner_normals(const ManifoldMesh& source, double smooth_angle, Context& context);
+
+//! The set as JSON ("bot2nurbs.samples/1", docs/schema/samples.schema.json). Doubles come back to
+//! the bit. `source_signature` is signature() of the source mesh.
+std::string samples_to_json(const SurfaceSampleSet& samples, const std::string& source_signature);
+
+//! Reads what samples_to_json wrote. Samples of a known place on the source are checked against its
+//! faces. Errors: cannot_read (not JSON), stale_domain (made for another mesh), invalid_domain
+//! naming the element by its JSON pointer.
+Result<SurfaceSampleSet> samples_from_json(const std::string& text, const ManifoldMesh& source);
+
+} // namespace bot2nurbs
