@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: MIT
+#include "maps/convex_map.h"
+
+#include "core/predicates.h"
+
+#include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace bot2nurbs {
+
+namespace {
+
+// Bounds of a cotangent weight. The lower one keeps weights positive where opposite angles add up
+// to more than a half turn; the upper one keeps the system well conditioned on needles.
+constexpr double min_weight = 0.02;
+constexpr double max_weight = 1e4;
+// Up to this many inner vertices a dense solve is faster than a sparse one.
+constexpr Index dense_limit = 48;
+
+// Weights of one overlay as a list of directed entries between inner vertices and anything.
+struct Edge {
+    Index a, b;
+    double weight;
+};
+
+double cotangent(const Vec3& at, const Vec3& p, const Vec3& q)
+{
+    const Vec3 u = p - at, v = q - at;
+    const double area = norm(cross(u, v));
+    const double cosine = dot(u, v);
+    // A degenerate triangle has no angle to speak of: the bounds decide.
+    return area > 0.0 ? cosine / area : (cosine > 0.0 ? max_weight : -max_weight);
+}
+
+// The undirected edges with at least one inner end, each once, with symmetric weights.
+std::vector<Edge> weighted_edges(const Overlay& overlay, bool harmonic)
+{
+    std::vector<Edge> half;
+    half.reserve(3 * overlay.triangles.size());
+    for (const auto& t : overlay.triangles)
+        for (int k = 0; k < 3; ++k) {
+            const Index a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];
+            if (a < overlay.boundary_count && b < overlay.boundary_count)
+                continue;
+            const double w = harmonic ? 0.5 * cotangent(overlay.vertices[c].position,
+                                                        overlay.vertices[a].position,
+                                                        overlay.vertices[b].position)
+                                      : 0.5;
+            half.push_back({std::min(a, b), std::max(a, b), w});
+        }
+    std::sort(half.begin(), half.end(), [](const Edge& p, const Edge& q) {
+        return p.a != q.a ? p.a < q.a : (p.b != q.b ? p.b < q.b : p.weight < q.weight);
+    });
+    std::vector<Edge> edges;
+    for (std::size_t i = 0; i < half.size(); i += 2) {
+        // Every edge with an inner end has two triangles.
+        Edge e = half[i];
+        e.weight = std::clamp(half[i].weight + half[i + 1].weight, min_weight, max_weight);
+        edges.push_back(e);
+    }
+    return edges;
+}
+
+// Puts the border vertices on the polygon, by arc length along each side.
+std::vector<Vec2> place_border(const Overlay& overlay, const std::vector<Vec2>& corners)
+{
+    std::vector<Vec2> uv(overlay.vertices.size());
+    const Index sides = overlay.side_count(), n = overlay.boundary_count;
+    for (Index s = 0; s < sides; ++s) {
+        const Index first = overlay.corners[s];
+        const Index last = s + 1 < sides ? overlay.corners[s + 1] : n;
+        std::vector<double> arc{0.0};
+        for (Index i = first; i < last; ++i)
+            arc.push_back(arc.back() + norm(overlay.vertices[(i + 1) % n].position -
+                                            overlay.vertices[i].position));
+        const Vec2 a = corners[s], b = corners[(s + 1) % sides];
+        const double count = static_cast<double>(last - first);
+        for (Index i = first; i < last; ++i) {
+            const double even = static_cast<double>(i - first) / count;
+            const double t = arc.back() > 0.0 ? arc[i - first] / arc.back() : even;
+            uv[i] = (1.0 - t) * a + t * b;
+        }
+    }
+    return uv;
+}
+
+// Solves for the inner vertices in the arithmetic of Scalar.
+template <class Scalar>
+bool solve_inner(const Overlay& overlay, const std::vector<Edge>& edges, std::vector<Vec2>& uv)
+{
+    const Index border = overlay.boundary_count;
+    const Index inner = static_cast<Index>(overlay.vertices.size()) - border;
+    using Rhs = Eigen::Matrix<Scalar, Eigen::Dynamic, 2>;
+    Rhs rhs = Rhs::Zero(inner, 2);
+    Eigen::Matrix<Scalar, Eigen::Dynamic, 1> diagonal =
+        Eigen::Matrix<Scalar, Eigen::Dynamic, 1>::Zero(inner);
+    for (const Edge& e : edges) {
+        diagonal(e.b - border) += Scalar(e.weight); // e.a < e.b, so e.b is inner.
+        if (e.a >= border) {
+            diagonal(e.a - border) += Scalar(e.weight);
+        } else {
+            rhs(e.b - border, 0) += Scalar(e.weight) * Scalar(uv[e.a].x);
+            rhs(e.b - border, 1) += Scalar(e.weight) * Scalar(uv[e.a].y);
+        }
+    }
+    Rhs solution;
+    if (inner <= dense_limit) {
+        using Dense = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+        Dense A = Dense::Zero(inner, inner);
+        for (Index i = 0; i < inner; ++i)
+            A(i, i) = diagonal(i);
+        for (const Edge& e : edges)
+            if (e.a >= border)
+                A(e.b - border, e.a - border) = -Scalar(e.weight);
+        Eigen::LLT<Dense, Eigen::Lower> factor(A);
+        if (factor.info() != Eigen::Success)
+            return false;
+        solution = factor.solve(rhs);
+    } else {
+        std::vector<Eigen::Triplet<Scalar>> entries;
+        entries.reserve(edges.size() + inner);
+        for (Index i = 0; i < inner; ++i)
+            entries.emplace_back(i, i, diagonal(i));
+        for (const Edge& e : edges)
+            if (e.a >= border)
+                entries.emplace_back(e.b - border, e.a - border, -Scalar(e.weight));
+        Eigen::SparseMatrix<Scalar> A(inner, inner);
+        A.setFromTriplets(entries.begin(), entries.end());
+        Eigen::SimplicialLLT<Eigen::SparseMatrix<Scalar>, Eigen::Lower> factor(A);
+        if (factor.info() != Eigen::Success)
+            return false;
+        solution = factor.solve(rhs);
+    }
+    for (Index i = 0; i < inner; ++i)
+        uv[border + i] = {static_cast<double>(solution(i, 0)), static_cast<double>(solution(i, 1))};
+    return true;
+}
+
+} // namespace
+
+std::vector<Vec2> regular_polygon(Index sides)
+{
+    constexpr double turn = 6.283185307179586;
+    std::vector<Vec2> corners(sides);
+    for (Index i = 0; i < sides; ++i) {
+        const double angle = turn * static_cast<double>(i) / static_cast<double>(sides);
+        corners[i] = {std::cos(angle), std::sin(angle)};
+    }
+    return corners;
+}
+
+std::vector<Vec2> unit_square()
+{
+    return {{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}};
+}
+
+bool is_injective(const Overlay& overlay, const std::vector<Vec2>& uv)
+{
+    for (const auto& t : overlay.triangles)
+        if (orient2d(uv[t[0]], uv[t[1]], uv[t[2]]) <= 0)
+            return false;
+    return true;
+}
+
+std::optional<ConvexMap> map_to_polygon(const ManifoldMesh&, const Overlay& overlay,
+                                        const std::vector<Vec2>& corners)
+{
+    ConvexMap map;
+    const std::vector<Vec2> border = place_border(overlay, corners);
+    const auto holds = [&](bool solved, MapLevel level) {
+        map.level = level;
+        return solved && is_injective(overlay, map.uv);
+    };
+    map.uv = border;
+    if (holds(solve_inner<double>(overlay, weighted_edges(overlay, true), map.uv),
+              MapLevel::harmonic))
+        return map;
+    const std::vector<Edge> uniform = weighted_edges(overlay, false);
+    map.uv = border;
+    if (holds(solve_inner<double>(overlay, uniform, map.uv), MapLevel::uniform))
+        return map;
+    // What rounding of the solve, not of the result, destroyed comes back with more digits.
+    using Extended = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<100>,
+                                                   boost::multiprecision::et_off>;
+    map.uv = border;
+    if (holds(solve_inner<Extended>(overlay, uniform, map.uv), MapLevel::exact))
+        return map;
+    return std::nullopt;
+}
+
+MapDistortion measure_distortion(const Overlay& overlay, const std::vector<Vec2>& uv)
+{
+    double energy = 0.0, area = 0.0, stretch_squared = 0.0, max_stretch = 0.0, source_area = 0.0;
+    for (const auto& t : overlay.triangles) {
+        const Vec3 p = overlay.vertices[t[1]].position - overlay.vertices[t[0]].position;
+        const Vec3 q = overlay.vertices[t[2]].position - overlay.vertices[t[0]].position;
+        const Vec2 a = uv[t[1]] - uv[t[0]], b = uv[t[2]] - uv[t[0]];
+        const double twice_source = norm(cross(p, q)), twice_target = cross(a, b);
+        area += 0.5 * twice_target;
+        source_area += 0.5 * twice_source;
+        if (twice_source <= 0.0 || twice_target <= 0.0)
+            continue;
+        // |grad u|^2 + |grad v|^2 = sum over the metric of the source triangle.
+        const double pp = dot(p, p), pq = dot(p, q), qq = dot(q, q);
+        const double aa = dot(a, a), ab = dot(a, b), bb = dot(b, b);
+        energy += 0.25 * (aa * qq - 2.0 * ab * pq + bb * pp) / twice_source;
+        // First fundamental form of the inverse map: columns of (p q) (a b)^-1.
+        const Vec3 su = (b.y * p - a.y * q) / twice_target;
+        const Vec3 sv = (a.x * q - b.x * p) / twice_target;
+        const double E = dot(su, su), F = dot(su, sv), G = dot(sv, sv);
+        const double mean = 0.5 * (E + G);
+        const double largest = mean + std::sqrt(std::max(0.0, mean * mean - (E * G - F * F)));
+        stretch_squared += 0.5 * twice_source * mean;
+        max_stretch = std::max(max_stretch, std::sqrt(largest));
+    }
+    MapDistortion d;
+    if (area > 0.0)
+        d.dirichlet = energy / area;
+    if (stretch_squared > 0.0 && source_area > 0.0)
+        d.max_stretch = max_stretch / std::sqrt(stretch_squared / source_area);
+    return d;
+}
+
+} // namespace bot2nurbs

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "maps/overlay.h"
+
+#include <vector>
+
+namespace bot2nurbs {
+
+//! How the weights of a convex map were chosen: each is tried when the one before folds in doubles.
+enum class MapLevel { harmonic, uniform, exact };
+
+//! A map of an overlay to a convex polygon.
+struct ConvexMap {
+    std::vector<Vec2> uv; //!< Per overlay vertex.
+    MapLevel level = MapLevel::harmonic;
+};
+
+//! Corners of a regular polygon on the unit circle, counter-clockwise; exactly convex.
+std::vector<Vec2> regular_polygon(Index sides);
+
+//! Corners of the unit square, counter-clockwise from the origin.
+std::vector<Vec2> unit_square();
+
+//! Maps an overlay to the convex polygon with the given corners (one per side), each side by arc
+//! length. Inner vertices are convex combinations of their neighbours with symmetric positive
+//! weights: cotangents, bounded below, so that the map is the discrete harmonic one wherever the
+//! triangulation is Delaunay, and by Tutte and Floater injective in any case; uniform weights when
+//! rounding folds a triangle; then uniform weights in extended precision. Injectivity is decided
+//! exactly for every triangle. \cite eck_1995, section 3, \cite tutte_1963 \cite floater_1997
+//! Empty when even that map has a triangle that is not positive after rounding to doubles.
+std::optional<ConvexMap> map_to_polygon(const ManifoldMesh& mesh, const Overlay& overlay,
+                                        const std::vector<Vec2>& corners);
+
+//! True when every triangle is positively oriented, decided exactly.
+bool is_injective(const Overlay& overlay, const std::vector<Vec2>& uv);
+
+//! Distortion of a map to the unit square or another polygon of area `target_area`.
+struct MapDistortion {
+    double dirichlet = 0.0;   //!< Harmonic energy over the target's area; 1 for a conformal map.
+    double max_stretch = 0.0; //!< Largest singular value of the inverse map, over its rms.
+};
+MapDistortion measure_distortion(const Overlay& overlay, const std::vector<Vec2>& uv);
+
+} // namespace bot2nurbs

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "maps/surface_path.h"
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace bot2nurbs {
+
+//! A triangulated piece of a mesh with disk topology whose border need not follow mesh edges: the
+//! mesh faces inside, and those on the border cut along it. Derived when needed and thrown away.
+struct Overlay {
+    //! Where a vertex lies: on a mesh vertex, on a mesh edge, or inside a mesh face.
+    struct Vertex {
+        Vec3 position;
+        Index mesh_vertex = invalid_index;
+        Index edge = invalid_index; //!< With t as in PathNode.
+        double t = 0.0;
+        Index face = invalid_index; //!< With weights of the face's corners.
+        std::array<double, 3> bary{};
+    };
+    std::vector<Vertex> vertices; //!< The first `boundary_count` are the border, counter-clockwise.
+    std::vector<std::array<Index, 3>> triangles; //!< Counter-clockwise.
+    std::vector<Index> face;                     //!< Per triangle: the mesh face it is part of.
+    Index boundary_count = 0;
+    std::vector<Index> corners; //!< Border vertices where a side starts; corners[0] is 0.
+
+    Index side_count() const { return static_cast<Index>(corners.size()); }
+    //! Weights of the corners of mesh face f at a vertex that lies on that face.
+    std::array<double, 3> bary_in(const ManifoldMesh& mesh, Index vertex, Index f) const;
+};
+
+//! Derives overlays. Keeps scratch arrays of the size of the mesh, so one object serves many calls
+//! from one thread; each call costs only what lies inside.
+class OverlayBuilder {
+public:
+    explicit OverlayBuilder(const ManifoldMesh& mesh);
+
+    //! The overlay of the disk to the left of a closed chain of paths, which must not cross and
+    //! have distinct corners. Mesh edges inside that join two border points of one side are split
+    //! in the middle, so that a convex border does not force triangles to collapse. Empty when the
+    //! region is not a disk.
+    std::optional<Overlay> disk(const std::vector<PathSide>& sides);
+
+    //! The overlay of the tile of the vertices labelled `label`: mixed edges are cut in the middle,
+    //! faces with three labels in their centroid; those junctions are the corners.
+    //! `seed` is a vertex of the tile. `side_label` receives the label across each side.
+    //! Empty when the tile is not a disk or has no junction.
+    std::optional<Overlay> tile(const std::vector<Index>& label, const std::vector<Index>& members,
+                                std::vector<Index>& side_label);
+
+    const ManifoldMesh& mesh() const { return mesh_; }
+
+private:
+    struct EdgePoint {
+        Index edge;
+        double t;
+        Index id;
+    };
+    struct Chord {
+        Index face, from, to;
+    };
+
+    void next_stamp();
+    Index local_vertex(Overlay& overlay, Index mesh_vertex);
+    void add_polygon(Overlay& overlay, Index face, const std::vector<Index>& polygon);
+    void split_same_side_edges(const Overlay& before, std::vector<Index>& polygon,
+                               Overlay& overlay);
+    bool same_side(const Overlay& overlay, Index p, Index q) const;
+    bool cut_face(Overlay& overlay, Index face, const Chord* chords, std::size_t count);
+    void flood(Overlay& overlay);
+    static bool is_disk(const Overlay& overlay);
+
+    const ManifoldMesh& mesh_;
+    std::uint32_t stamp_ = 0;
+    std::vector<std::uint32_t> vertex_stamp_, face_stamp_;
+    std::vector<Index> vertex_local_;
+    // State of one call.
+    std::vector<EdgePoint> edge_points_;
+    std::vector<Chord> chords_;
+    std::vector<Index> blocked_; // Halfedges of faces inside that lie on the border; sorted.
+    std::vector<Index> pending_; // Faces to visit.
+    std::vector<std::array<Index, 2>> vertex_sides_; // Per border vertex: its one or two sides.
+    std::vector<std::pair<std::pair<Index, Index>, Index>> midpoints_;
+};
+
+} // namespace bot2nurbs
