@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bot2nurbs/context.h"
+#include "bot2nurbs/fit_network.h"
+#include "bot2nurbs/report.h"
+#include "bot2nurbs/spline_network.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace bot2nurbs {
+
+//! What convert() reads, makes and writes. Paths are as the operating system takes them.
+struct ConvertOptions {
+    std::string input; //!< Mesh file: .stl, .obj, .ply or .off.
+    //! B-Rep files: .3dm, .step, .stp or .brep. May be empty when domain_out is given.
+    std::vector<std::string> outputs;
+
+    //! Wanted number of patches of each component; by default chosen from the shape. At least 6.
+    std::optional<Index> patches;
+    SplineScheme spline = SplineScheme::peters;
+    //! Knots to write; by default those of the paper in .3dm, and in .step and .brep the C1 form,
+    //! because CAD kernels take a triple knot for a break.
+    std::optional<KnotForm> knots;
+    FitOptions fit;
+
+    bool repair = true;  //!< Make harmless repairs; false: reject an input that needs any.
+    bool strict = false; //!< Reject self-intersecting input instead of warning.
+
+    //! Domain files to use instead of the automatic layout, each for the component whose signature
+    //! it carries. A file that belongs to no component is refused.
+    std::vector<std::string> domain_in;
+    //! Where to write the domain. With several components the second becomes "name-2.json", and so
+    //! on.
+    std::optional<std::string> domain_out;
+    //! Where to write a tessellation (binary PLY) for inspection: per vertex the normal, patch,
+    //! parameters, signed distance to the source, and at patch corners the valence.
+    std::optional<std::string> tessellation;
+
+    std::string units;            //!< Of the coordinates ("mm"); empty: as the input says, else mm.
+    int archive_version = 50;     //!< Of .3dm: 4, 5, 6, 7, 8 as 4, 50, 60, 70, 80.
+    std::string step_schema = ""; //!< "AP214" or "AP242"; empty: AP242.
+    std::uint64_t seed = 0;       //!< Reserved for tie-breaking experiments.
+
+    //! The first option that is out of its range, or contradicts another, or names a file that
+    //! cannot be written: what can be known before any work is done.
+    std::optional<Error> check() const;
+};
+
+//! Runs the whole way from a mesh file to B-Rep files: read, check, repair, and for each connected
+//! component layout (or a supplied domain), charts, samples, spline network, fit, B-Rep; then
+//! writes all components as solids of one file, in each format asked for.
+//!
+//! Guarantees:
+//! 1. every file is written whole or not at all, and none before every component has passed its
+//!    checks;
+//! 2. the same bytes for any thread count;
+//! 3. coordinates come out in the place and units they came in.
+//! Cancel through the context. Errors: those of the stages; open_mesh, self_intersecting (with
+//! strict), stale_domain, bad_option, cannot_write.
+Result<ConvertReport> convert(const ConvertOptions& options, Context& context);
+
+} // namespace bot2nurbs

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bot2nurbs/brep.h"
+#include "bot2nurbs/deviation.h"
+#include "bot2nurbs/fit_network.h"
+#include "bot2nurbs/layout.h"
+#include "bot2nurbs/repair_mesh.h"
+#include "bot2nurbs/spline_network.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace bot2nurbs {
+
+struct ConvertOptions;
+
+//! Something the user should know that did not stop the conversion.
+struct Warning {
+    std::string code; //!< Stable name, such as "self_intersection".
+    std::string message;
+    Index element = invalid_index; //!< The first element concerned, as the message numbers it.
+};
+
+//! The quadrilateral domain of one component, in numbers.
+struct DomainReport {
+    std::string source;    //!< "eck", "supplied", ...
+    std::string signature; //!< Of the repaired component.
+    Index faces = 0, edges = 0, vertices = 0;
+    Index extraordinary = 0, max_valence = 0;
+    std::vector<Index> valences; //!< Number of vertices with valence 0, 1, 2, ...
+};
+
+//! What became of one connected component of the input.
+struct ComponentOutcome {
+    Index first_face = invalid_index; //!< Its first triangle, in the numbering of the input.
+    Index vertices = 0, faces = 0;    //!< After repair.
+    int genus = 0;
+    Index boundary_loops = 0;
+    double diagonal = 0.0; //!< Of the component's box, in units of the input.
+
+    DomainReport domain;
+    std::optional<LayoutSummary> layout; //!< Absent when the domain was supplied.
+    FitSummary fit;                      //!< Distances in units of the input.
+    Deviation deviation;                 //!< In units of the input.
+    Continuity continuity;               //!< Of the surface as written.
+    BrepReport brep;
+    Index brep_faces = 0, brep_edges = 0, brep_vertices = 0;
+};
+
+struct OutputFile {
+    std::string path, format;
+    std::uint64_t bytes = 0;
+};
+
+//! What a conversion read, did and wrote.
+struct ConvertReport {
+    Index input_vertices = 0, input_faces = 0; //!< Triangles, before repair.
+    std::string units;                         //!< Written into files that carry a unit.
+    double diagonal = 0.0;                     //!< Of the box of all components.
+    Index sharp_edges = 0; //!< Edges of the input with more than 40 degrees between the normals.
+    std::vector<RepairNote> repairs;
+    std::vector<ComponentOutcome> components;
+    std::vector<OutputFile> outputs;
+    std::vector<Warning> warnings;
+    std::vector<StageRecord> stages;
+
+    //! Largest distances over all components, mean squares pooled by their samples.
+    Deviation deviation() const;
+    bool valid() const; //!< All B-Reps are; false when none was made.
+    bool solid() const; //!< All B-Reps are; false when none was made.
+};
+
+//! The report as JSON: schema "bot2nurbs.report/1", docs/schema/report.schema.json.
+std::string report_to_json(const ConvertOptions& options, const ConvertReport& report);
+
+//! The report of a conversion that failed: the options, the error, and the stages that ended.
+std::string failure_to_json(const ConvertOptions& options, const Error& error,
+                            const std::vector<StageRecord>& stages);
+
+} // namespace bot2nurbs

@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: MIT
+#include "bot2nurbs/report.h"
+
+#include "bot2nurbs/convert.h"
+#include "bot2nurbs/version.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace bot2nurbs {
+
+namespace {
+
+// Keys in the order of writing: reports are read by people too.
+using Json = nlohmann::ordered_json;
+
+constexpr const char* schema_name = "bot2nurbs.report/1";
+
+void pool(DistanceStatistics& total, const DistanceStatistics& part)
+{
+    if (part.max > total.max || total.samples == 0) {
+        total.max = part.max;
+        total.worst = part.worst;
+    }
+    const double n = total.samples, m = part.samples;
+    if (n + m > 0.0)
+        total.rms = std::sqrt((n * total.rms * total.rms + m * part.rms * part.rms) / (n + m));
+    total.samples += part.samples;
+}
+
+Json index_or_null(Index i)
+{
+    return i == invalid_index ? Json(nullptr) : Json(i);
+}
+
+Json point_json(const Vec3& p)
+{
+    return Json::array({p.x, p.y, p.z});
+}
+
+const char* knots_name(const std::optional<KnotForm>& knots)
+{
+    if (!knots)
+        return "auto";
+    return *knots == KnotForm::paper ? "paper" : "c1";
+}
+
+Json options_json(const ConvertOptions& o)
+{
+    Json j;
+    j["patches"] = o.patches ? Json(*o.patches) : Json(nullptr);
+    j["spline"] = o.spline == SplineScheme::peters ? "peters" : "eck-hoppe";
+    j["knots"] = knots_name(o.knots);
+    j["rounds"] = o.fit.max_rounds;
+    j["robust"] = o.fit.robust;
+    j["repair"] = o.repair;
+    j["strict"] = o.strict;
+    j["domain_in"] = o.domain_in;
+    j["domain_out"] = o.domain_out ? Json(*o.domain_out) : Json(nullptr);
+    j["units"] = o.units;
+    j["archive_version"] = o.archive_version;
+    j["step_schema"] = o.step_schema.empty() ? "AP242" : o.step_schema;
+    j["seed"] = o.seed;
+    return j;
+}
+
+Json repair_json(const RepairNote& note)
+{
+    return {{"code", note.code}, {"message", note.message}, {"count", note.count}};
+}
+
+Json side_json(const DistanceStatistics& s)
+{
+    return {{"max", s.max}, {"rms", s.rms}, {"samples", s.samples}, {"worst", point_json(s.worst)}};
+}
+
+//! `diagonal`: what relative distances are relative to.
+Json deviation_json(const Deviation& d, double diagonal, const std::string& unit)
+{
+    Json j;
+    j["unit"] = unit;
+    j["diagonal"] = diagonal;
+    j["kind"] = "sampled";
+    j["max"] = d.max();
+    j["rms"] = d.rms();
+    j["max_relative"] = diagonal > 0.0 ? d.max() / diagonal : 0.0;
+    j["rms_relative"] = diagonal > 0.0 ? d.rms() / diagonal : 0.0;
+    j["source_to_surface"] = side_json(d.source_to_surface);
+    j["surface_to_source"] = side_json(d.surface_to_source);
+    return j;
+}
+
+Json continuity_json(const Continuity& c)
+{
+    return {{"max_gap", c.max_gap},
+            {"max_g1_angle_deg", c.max_g1_angle_deg},
+            {"crease_edges", c.crease_edges}};
+}
+
+Json domain_json(const DomainReport& d)
+{
+    Json j;
+    j["faces"] = d.faces;
+    j["edges"] = d.edges;
+    j["vertices"] = d.vertices;
+    j["extraordinary"] = d.extraordinary;
+    j["max_valence"] = d.max_valence;
+    Json valences = Json::object();
+    for (std::size_t v = 0; v < d.valences.size(); ++v)
+        if (d.valences[v] > 0)
+            valences[std::to_string(v)] = d.valences[v];
+    j["valences"] = valences;
+    j["source"] = d.source;
+    if (!d.signature.empty())
+        j["signature"] = d.signature;
+    return j;
+}
+
+Json layout_json(const LayoutSummary& l)
+{
+    return {{"sites", l.sites},
+            {"sites_added", l.sites_added},
+            {"target_patches", l.target_patches},
+            {"uniform_maps", l.uniform_maps},
+            {"exact_maps", l.exact_maps},
+            {"subdivided", l.subdivided},
+            {"notes", l.notes}};
+}
+
+Json fit_json(const FitSummary& f)
+{
+    Json j;
+    j["rounds"] = f.rounds.size();
+    j["unknowns"] = f.unknowns;
+    j["samples"] = f.samples;
+    j["condition"] = f.condition;
+    j["used_fallback"] = f.used_fallback;
+    j["termination"] = f.termination;
+    return j;
+}
+
+Json rounds_json(const FitSummary& f)
+{
+    Json j = Json::array();
+    for (const FitRound& r : f.rounds)
+        j.push_back({{"rms", r.rms},
+                     {"max", r.max},
+                     {"fairness", r.fairness},
+                     {"damping", r.damping},
+                     {"crossed", r.crossed},
+                     {"seconds", r.seconds}});
+    return j;
+}
+
+Json brep_json(Index faces, Index edges, Index vertices, const BrepReport& b)
+{
+    Json j;
+    j["faces"] = faces;
+    j["edges"] = edges;
+    j["vertices"] = vertices;
+    j["boundary_edges"] = b.boundary_edges;
+    j["nonmanifold_edges"] = b.nonmanifold_edges;
+    j["valid"] = b.valid;
+    j["solid"] = b.solid;
+    j["max_edge_gap"] = b.max_edge_gap;
+    j["volume"] = b.volume;
+    return j;
+}
+
+Json component_json(const ComponentOutcome& c, const std::string& unit)
+{
+    Json j;
+    j["first_face"] = index_or_null(c.first_face);
+    j["vertices"] = c.vertices;
+    j["faces"] = c.faces;
+    j["genus"] = c.genus;
+    j["boundary_loops"] = c.boundary_loops;
+    j["domain"] = domain_json(c.domain);
+    if (c.layout)
+        j["layout"] = layout_json(*c.layout);
+    if (c.brep_faces > 0) {
+        j["fit"] = fit_json(c.fit);
+        j["fit"]["history"] = rounds_json(c.fit);
+        j["deviation"] = deviation_json(c.deviation, c.diagonal, unit);
+        j["deviation"]["worst_patch"] = index_or_null(c.deviation.worst_patch);
+        j["continuity"] = continuity_json(c.continuity);
+        j["brep"] = brep_json(c.brep_faces, c.brep_edges, c.brep_vertices, c.brep);
+    }
+    return j;
+}
+
+Json stages_json(const std::vector<StageRecord>& stages)
+{
+    Json j = Json::array();
+    for (const StageRecord& s : stages)
+        j.push_back({{"name", s.name}, {"seconds", s.seconds}, {"peak_rss_mib", s.peak_rss_mib}});
+    return j;
+}
+
+Json input_json(const ConvertOptions& options, const ConvertReport& report)
+{
+    Json j;
+    j["path"] = options.input;
+    j["vertices"] = report.input_vertices;
+    j["faces"] = report.input_faces;
+    j["points"] = 0;
+    j["units"] = report.units;
+    j["components"] = Json::array();
+    for (const ComponentOutcome& c : report.components)
+        j["components"].push_back({{"genus", c.genus}, {"boundary_loops", c.boundary_loops}});
+    j["repairs"] = Json::array();
+    for (const RepairNote& note : report.repairs)
+        j["repairs"].push_back(repair_json(note));
+    return j;
+}
+
+DomainReport all_domains(const std::vector<ComponentOutcome>& components)
+{
+    DomainReport sum;
+    for (const ComponentOutcome& c : components) {
+        const DomainReport& d = c.domain;
+        sum.source = sum.source.empty() || sum.source == d.source ? d.source : "mixed";
+        sum.faces += d.faces;
+        sum.edges += d.edges;
+        sum.vertices += d.vertices;
+        sum.extraordinary += d.extraordinary;
+        sum.max_valence = std::max(sum.max_valence, d.max_valence);
+        sum.valences.resize(std::max(sum.valences.size(), d.valences.size()), 0);
+        for (std::size_t v = 0; v < d.valences.size(); ++v)
+            sum.valences[v] += d.valences[v];
+    }
+    if (components.size() == 1)
+        sum.signature = components.front().domain.signature;
+    return sum;
+}
+
+//! Sizes summed; rounds, condition and termination those of the component with most rounds.
+FitSummary all_fits(const std::vector<ComponentOutcome>& components)
+{
+    FitSummary sum;
+    for (const ComponentOutcome& c : components) {
+        if (c.fit.rounds.size() > sum.rounds.size()) {
+            sum.rounds = c.fit.rounds;
+            sum.termination = c.fit.termination;
+        }
+        sum.unknowns += c.fit.unknowns;
+        sum.samples += c.fit.samples;
+        sum.condition = std::max(sum.condition, c.fit.condition);
+        sum.used_fallback = sum.used_fallback || c.fit.used_fallback;
+    }
+    return sum;
+}
+
+Json all_breps(const ConvertReport& report)
+{
+    BrepReport sum;
+    Index faces = 0, edges = 0, vertices = 0;
+    for (const ComponentOutcome& c : report.components) {
+        faces += c.brep_faces;
+        edges += c.brep_edges;
+        vertices += c.brep_vertices;
+        sum.boundary_edges += c.brep.boundary_edges;
+        sum.nonmanifold_edges += c.brep.nonmanifold_edges;
+        sum.max_edge_gap = std::max(sum.max_edge_gap, c.brep.max_edge_gap);
+        sum.volume += c.brep.volume;
+    }
+    sum.valid = report.valid();
+    sum.solid = report.solid();
+    return brep_json(faces, edges, vertices, sum);
+}
+
+Continuity all_joins(const std::vector<ComponentOutcome>& components)
+{
+    Continuity worst;
+    for (const ComponentOutcome& c : components) {
+        worst.max_gap = std::max(worst.max_gap, c.continuity.max_gap);
+        worst.max_g1_angle_deg = std::max(worst.max_g1_angle_deg, c.continuity.max_g1_angle_deg);
+        worst.crease_edges += c.continuity.crease_edges;
+    }
+    return worst;
+}
+
+//! Paths may hold bytes that are no UTF-8: they are replaced, so that writing never fails.
+std::string text_of(const Json& j)
+{
+    return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+} // namespace
+
+Deviation ConvertReport::deviation() const
+{
+    Deviation all;
+    for (const ComponentOutcome& c : components) {
+        pool(all.source_to_surface, c.deviation.source_to_surface);
+        pool(all.surface_to_source, c.deviation.surface_to_source);
+    }
+    return all;
+}
+
+bool ConvertReport::valid() const
+{
+    return !components.empty() &&
+           std::all_of(components.begin(), components.end(),
+                       [](const ComponentOutcome& c) { return c.brep.valid; });
+}
+
+bool ConvertReport::solid() const
+{
+    return !components.empty() &&
+           std::all_of(components.begin(), components.end(),
+                       [](const ComponentOutcome& c) { return c.brep.solid; });
+}
+
+std::string report_to_json(const ConvertOptions& options, const ConvertReport& report)
+{
+    Json j;
+    j["schema"] = schema_name;
+    j["version"] = BOT2NURBS_VERSION;
+    j["options"] = options_json(options);
+    j["input"] = input_json(options, report);
+    j["domain"] = domain_json(all_domains(report.components));
+    const bool fitted = !report.components.empty() && report.components.front().brep_faces > 0;
+    if (fitted) {
+        j["fit"] = fit_json(all_fits(report.components));
+        j["deviation"] = deviation_json(report.deviation(), report.diagonal, report.units);
+        j["continuity"] = continuity_json(all_joins(report.components));
+        j["brep"] = all_breps(report);
+        // No test of our own decides this yet; the report must not claim more.
+        j["embedded"] = "undecided";
+    }
+    j["features"] = {{"detected_edges", report.sharp_edges},
+                     {"kept_edges", 0},
+                     {"smoothed_edges", report.sharp_edges}};
+    j["components"] = Json::array();
+    for (const ComponentOutcome& c : report.components)
+        j["components"].push_back(component_json(c, report.units));
+    j["outputs"] = Json::array();
+    for (const OutputFile& o : report.outputs)
+        j["outputs"].push_back({{"path", o.path}, {"format", o.format}, {"bytes", o.bytes}});
+    j["stages"] = stages_json(report.stages);
+    j["warnings"] = Json::array();
+    for (const Warning& w : report.warnings)
+        j["warnings"].push_back(
+            {{"code", w.code}, {"message", w.message}, {"element", index_or_null(w.element)}});
+    return text_of(j);
+}
+
+std::string failure_to_json(const ConvertOptions& options, const Error& error,
+                            const std::vector<StageRecord>& stages)
+{
+    Json j;
+    j["schema"] = schema_name;
+    j["version"] = BOT2NURBS_VERSION;
+    j["options"] = options_json(options);
+    j["input"] = {{"path", options.input}};
+    j["error"] = {{"code", name(error.code)},
+                  {"message", error.message},
+                  {"element", index_or_null(error.element)},
+                  {"exit_code", exit_code(error.code)}};
+    j["stages"] = stages_json(stages);
+    return text_of(j);
+}
+
+} // namespace bot2nurbs
