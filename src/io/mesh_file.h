@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bot2nurbs/context.h"
+#include "bot2nurbs/manifold_mesh.h"
+#include "mesh/triangulate_polygon.h"
+
+#include <string>
+#include <string_view>
+
+namespace bot2nurbs {
+
+//! A file in memory, under the name that messages use.
+struct MeshFile {
+    std::string name;
+    std::string_view bytes;
+};
+
+// One reader a format; read_mesh chooses. Errors as read_mesh.
+Result<TriangleSoup> read_stl(const MeshFile& file, Context& context);
+Result<TriangleSoup> read_obj(const MeshFile& file, Context& context);
+Result<TriangleSoup> read_ply(const MeshFile& file, Context& context);
+Result<TriangleSoup> read_off(const MeshFile& file, Context& context);
+
+//! Readers ask for cancellation once in so many elements.
+inline constexpr std::size_t elements_per_poll = 65536;
+
+//! cannot_read at a line of a text file.
+Error error_at_line(const MeshFile& file, std::size_t line, const std::string& what,
+                    Index element = invalid_index);
+//! cannot_read at a byte of a binary file.
+Error error_at_byte(const MeshFile& file, std::size_t byte, const std::string& what,
+                    Index element = invalid_index);
+//! A word of the file for a message: quoted, without unprintable bytes, cut when long.
+std::string quoted(std::string_view word);
+//! Says that a number was expected where `found` stands (empty: nothing stands there).
+std::string expected_number(std::string_view found);
+
+//! Turns polygons into triangles with provenance and checks what all formats share: there are
+//! faces, and coordinates are finite. Corners must be in range. Faces with fewer than three corners
+//! are left out with a warning.
+Result<TriangleSoup> finish_soup(const MeshFile& file, std::vector<Vec3> positions,
+                                 const PolygonList& polygons, Context& context);
+
+} // namespace bot2nurbs
