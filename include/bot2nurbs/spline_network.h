@@ -61,7 +61,7 @@ class SplineSurface {
 public:
     SplineSurface() = default;
     //! Applies the stencils. `unknowns` has network.unknown_count entries. Coefficients that two
-    //! patches share are computed once and copied, so they agree to the bit.
+    //! patches share have the same stencil row, summed in the same order: they agree to the bit.
     SplineSurface(const SplineNetwork& network, const std::vector<Vec3>& unknowns);
 
     Index patch_count() const { return static_cast<Index>(bezier_.size() / 169); }
@@ -99,15 +99,21 @@ struct BsplinePatch {
 //! representable.
 BsplinePatch bspline_patch(const SplineSurface& surface, Index patch, KnotForm form);
 
-//! Continuity measured along every smooth edge of a network: the largest distance between the two
-//! sides' positions (0 by construction), and the largest angle in degrees between their normals.
+//! Continuity measured at samples along every edge of a network, and inside the patches along their
+//! inner knots. Angles are between the normals of the two sides, resolved down to rounding.
 struct Continuity {
-    double max_gap = 0.0;
-    double max_g1_angle_deg = 0.0;
-    Index worst_edge = invalid_index;
-    Index crease_edges = 0;
+    double max_gap = 0.0;              //!< Between the two sides of any edge; 0 by construction.
+    double max_g1_angle_deg = 0.0;     //!< Across smooth edges.
+    Index worst_edge = invalid_index;  //!< Where max_g1_angle_deg is.
+    Index crease_edges = 0;            //!< Inner edges across which only positions agree.
+    double max_inner_angle_deg = 0.0;  //!< Across the inner knots of the patches.
+    Index worst_patch = invalid_index; //!< Where max_inner_angle_deg is.
+    //! Samples left out of the angles because the surface has no normal there (parallel or zero
+    //! derivatives) that rounding of the coefficients would not drown.
+    std::size_t undefined_normals = 0;
 };
-//! `samples` parameters per Bezier piece and edge, both ends included.
+//! `samples` >= 2 parameters per Bezier piece and edge, both ends included. Cost O(samples) per
+//! piece.
 Continuity measure_continuity(const QuadComplex& complex, const SplineSurface& surface,
                               Index samples = 9);
 

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "spline/fans.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace bot2nurbs {
+
+double corner_fan_angle(Index k)
+{
+    if (k == 1)
+        return 0.0; // no smooth edge, so no angle is needed
+    return k == 2 ? 2.0 * M_PI / 3.0 : 1.5 * M_PI;
+}
+
+Result<std::vector<Fan>> find_fans(const QuadComplex& complex)
+{
+    std::vector<Fan> fans;
+    fans.reserve(complex.vertex_count());
+    std::vector<Index> around; // sectors of the vertex, counter-clockwise
+    for (Index v = 0; v < complex.vertex_count(); ++v) {
+        around.clear();
+        Index h = complex.halfedge_at(v);
+        do {
+            around.push_back(h);
+            h = complex.rotate_ccw(h);
+        } while (h != invalid_index && h != complex.halfedge_at(v));
+        const bool boundary = h == invalid_index;
+        if (!boundary && around.size() < 3) {
+            return Error{ErrorCode::invalid_domain,
+                         "vertex " + std::to_string(v) + " lies inside the domain and has only " +
+                             std::to_string(around.size()) + " quads; at least 3 are needed",
+                         v};
+        }
+
+        const auto starts_fan = [&](Index s) { return complex.is_sharp(complex.edge(s)); };
+        const auto first = std::find_if(around.begin(), around.end(), starts_fan);
+        if (first == around.end()) {
+            fans.push_back({v, FanKind::closed, 2.0 * M_PI, around});
+            continue;
+        }
+        // At a boundary vertex the first sector already starts at a sharp edge.
+        std::rotate(around.begin(), first, around.end());
+        const std::size_t first_fan = fans.size();
+        for (Index s : around) {
+            if (starts_fan(s))
+                fans.push_back({v, FanKind::corner, 0.0, {}});
+            fans.back().sectors.push_back(s);
+        }
+        const std::size_t fan_count = fans.size() - first_fan;
+        const std::size_t sharp_edges = fan_count + (boundary ? 1 : 0);
+        bool smooth = sharp_edges == 2 && !complex.is_corner(v);
+        for (std::size_t f = first_fan; f < fans.size(); ++f) {
+            // A straight tangent over a single quad would leave its corner without a normal.
+            if (fans[f].sectors.size() < 2)
+                smooth = false;
+        }
+        for (std::size_t f = first_fan; f < fans.size(); ++f) {
+            Fan& fan = fans[f];
+            if (sharp_edges == 1) {
+                fan.kind = FanKind::dart;
+                fan.alpha = 2.0 * M_PI;
+            } else if (smooth) {
+                fan.kind = FanKind::smooth;
+                fan.alpha = M_PI;
+            } else {
+                fan.alpha = corner_fan_angle(fan.sector_count());
+            }
+        }
+    }
+    return fans;
+}
+
+} // namespace bot2nurbs
