@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: MIT
+#include "fit/fit_loop.h"
+
+#include "core/parallel.h"
+#include "fit/bernstein_gram.h"
+#include "fit/parameter_correction.h"
+#include "fit/stacked_rows.h"
+#include "spline/bernstein.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace bot2nurbs {
+
+namespace {
+
+//! Point-distance part of the tangent-distance rows: a tenth in the first tangent round, then a
+//! tenth of the last after every accepted round. Lower floors move the parametrisation faster and
+//! end in slightly worse minima (measured: docs/algorithms/fit.md).
+constexpr double first_mu = 0.1;
+constexpr double mu_factor = 0.1;
+constexpr double mu_floor = 1e-4;
+//! The first solve and four corrections, as \cite eck_hoppe_1996 used.
+constexpr int least_rounds = 5;
+//! Fairness falls by this a round.
+const double fairness_decay = std::sqrt(0.1);
+//! A quad with this many samples, two for each of its unknowns, keeps the fairness at
+//! `sparse_fairness`; with four times as many the data alone decide down to 1e-7.
+constexpr double sparse_samples = 30.0;
+constexpr double sparse_fairness = 1e-4;
+constexpr double sparse_power = 5.0;
+//! Huber's constant: 95 % efficiency for normal errors.
+constexpr double huber = 1.345;
+//! Standard deviation of normal errors over their median absolute value.
+constexpr double mad_to_deviation = 1.4826;
+//! Distances below this share of the box are rounding, not noise, and get full weight.
+constexpr double least_deviation = 1e-12;
+//! An accepted round may raise the objective by rounding only.
+constexpr double rounding = 1e-12;
+//! A quad counts with at least this share of the mean area, so that collapsed quads stay fair.
+constexpr double least_share = 1e-3;
+//! Above this many multiplications (about a minute) a coupled factorisation is not attempted and
+//! point-distance rows are used instead.
+constexpr double coupled_work_limit = 6e10;
+
+double now()
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+//! Thin-plate energy of every quad over [0, 4]^2.
+std::vector<double> quad_energies(const SplineSurface& surface)
+{
+    const Matrix16& e = thin_plate_matrix();
+    std::vector<double> energy(surface.patch_count(), 0.0);
+    Eigen::Matrix<double, 16, 3> x;
+    for (Index p = 0; p < surface.patch_count() * ReducedNetwork::pieces_per_quad; ++p) {
+        for (Index i = 0; i < 16; ++i) {
+            const Vec3& c = surface.bezier()[bezier_index(p, i)];
+            x.row(i) << c.x, c.y, c.z;
+        }
+        energy[p / ReducedNetwork::pieces_per_quad] += (x.cwiseProduct(e * x)).sum();
+    }
+    return energy;
+}
+
+//! Area of every quad by midpoints of its Bezier pieces.
+std::vector<double> quad_areas(const SplineSurface& surface)
+{
+    constexpr int side = 2 * pieces_per_side;
+    std::vector<double> area(surface.patch_count(), 0.0);
+    for (Index q = 0; q < surface.patch_count(); ++q)
+        for (int i = 0; i < side; ++i)
+            for (int j = 0; j < side; ++j) {
+                const SurfacePoint s = surface.evaluate({q, (i + 0.5) / side, (j + 0.5) / side});
+                area[q] += norm(cross(s.du, s.dv)) / (side * side);
+            }
+    return area;
+}
+
+} // namespace
+
+FitLoop::FitLoop(const SplineNetwork& network, const ReducedNetwork& reduced,
+                 const FitOptions& options, Context& context)
+    : network_(network), reduced_(reduced), options_(options), context_(context), system_(reduced)
+{
+    // Each of the 27 multiplications of a 3 x 3 block product, half of them by symmetry.
+    coupled_affordable_ = 0.5 * 27.0 * system_.factor_work() <= coupled_work_limit;
+}
+
+void FitLoop::set_quad_share(const SplineSurface* surface)
+{
+    const Index quads = network_.complex.quad_count();
+    std::vector<double> area(quads, 0.0);
+    if (surface)
+        area = quad_areas(*surface);
+    else
+        for (std::size_t i = 0; i < where.size(); ++i)
+            area[where[i].quad] += weights[i];
+    double sum = 0.0;
+    for (const double a : area)
+        sum += a;
+    quad_share_.resize(quads);
+    for (Index q = 0; q < quads; ++q)
+        quad_share_[q] = std::max(area[q] / sum, least_share / quads) / 16.0;
+}
+
+void FitLoop::set_fairness(int round)
+{
+    const double start = options_.fairness * std::pow(fairness_decay, round);
+    round_fairness_ = std::max(start, options_.fairness_floor);
+    fairness_.resize(quad_share_.size());
+    for (std::size_t q = 0; q < fairness_.size(); ++q)
+        fairness_[q] = std::max(start, floor_[q]) * quad_share_[q];
+}
+
+std::vector<FitRow> FitLoop::rows_at(const State& state) const
+{
+    const SurfaceWalk walk(network_.complex, state.surface);
+    std::vector<FitRow> rows(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        FitRow& row = rows[i];
+        const DomainPoint& d = where[i];
+        const PieceParameter u = piece_parameter(d.u), v = piece_parameter(d.v);
+        row.piece = 16 * d.quad + 4 * u.piece + v.piece;
+        row.s = u.t;
+        row.t = v.t;
+        row.weight = weights[i];
+        if (state.feet.empty()) {
+            row.residual = points[i];
+            continue;
+        }
+        const SurfacePoint& s = state.feet[i].surface;
+        row.residual = points[i] - s.position;
+        // The distance to a rim grows in every direction across it.
+        if (!walk.on_sharp_edge(d))
+            row.normal = normalized(cross(s.du, s.dv));
+    }
+    return rows;
+}
+
+std::vector<double> FitLoop::robust_factors(const State& state) const
+{
+    std::vector<double> factors(points.size(), 1.0);
+    if (!options_.robust || state.feet.empty())
+        return factors;
+    std::vector<double> distance(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+        distance[i] = state.feet[i].distance;
+    const double deviation = std::max(mad_to_deviation * median(distance), least_deviation);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (distance[i] > huber * deviation)
+            factors[i] = huber * deviation / distance[i];
+    return factors;
+}
+
+double FitLoop::objective(const State& state, const std::vector<double>& factors) const
+{
+    double sum = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        sum += weights[i] * factors[i] * state.feet[i].distance * state.feet[i].distance;
+    for (std::size_t q = 0; q < fairness_.size(); ++q)
+        sum += fairness_[q] * state.quad_energy[q];
+    return sum;
+}
+
+FitLoop::State FitLoop::moved(const State& state, const std::vector<Vec3>& move) const
+{
+    State next;
+    next.unknowns = state.unknowns;
+    for (std::size_t i = 0; i < move.size(); ++i)
+        next.unknowns[i] += move[i];
+    next.surface = SplineSurface(network_, reduced_.expand(next.unknowns));
+    next.quad_energy = quad_energies(next.surface);
+    if (!context_.cancelled())
+        next.feet = correct_parameters(network_.complex, next.surface, points, where, context_);
+    return next;
+}
+
+NormalSystem::Solution FitLoop::solve(const State& state, const std::vector<FitRow>& rows,
+                                      double mu)
+{
+    const RowsByPiece groups = group_by_piece(rows, reduced_.piece_count());
+    RoundProblem problem;
+    problem.rows = &rows;
+    problem.groups = &groups;
+    problem.bezier = &state.surface.bezier();
+    problem.fairness = &fairness_;
+    problem.mu = mu;
+    NormalSystem::Solution solution = system_.solve(problem, options_.condition_limit, context_);
+    if (!solution.ok && mu >= 1.0 && !context_.cancelled()) {
+        solution = solve_stacked_rows(reduced_, problem, context_);
+        summary.used_fallback = summary.used_fallback || solution.ok;
+    }
+    if (solution.ok)
+        summary.condition = solution.condition;
+    return solution;
+}
+
+Status FitLoop::first_round(State& state)
+{
+    state.unknowns.assign(reduced_.free_count(), Vec3{});
+    const NormalSystem::Solution solution = solve(state, rows_at(state), 1.0);
+    if (context_.cancelled())
+        return Context::cancelled_error("fit");
+    if (!solution.ok)
+        return Error{ErrorCode::fit_failed, "the first least-squares system could not be solved",
+                     invalid_index};
+    state = moved(state, solution.move);
+    if (context_.cancelled())
+        return Context::cancelled_error("fit");
+    return std::nullopt;
+}
+
+Status FitLoop::next_round(int round, State& state, double& mu)
+{
+    set_fairness(round);
+    const std::vector<double> factors = robust_factors(state);
+    std::vector<FitRow> rows = rows_at(state);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        rows[i].weight *= factors[i];
+    const double before = objective(state, factors);
+    for (;;) {
+        const NormalSystem::Solution solution = solve(state, rows, mu);
+        if (context_.cancelled())
+            return Context::cancelled_error("fit");
+        if (solution.ok) {
+            State next = moved(state, solution.move);
+            if (context_.cancelled())
+                return Context::cancelled_error("fit");
+            if (objective(next, factors) <= before * (1.0 + rounding)) {
+                state = std::move(next);
+                return std::nullopt;
+            }
+        } else if (mu >= 1.0) {
+            return Error{ErrorCode::fit_failed,
+                         "the least-squares system of round " + std::to_string(round + 1) +
+                             " could not be solved",
+                         invalid_index};
+        }
+        // With mu = 1 a solve lowers the objective whatever the feet do, so what is left there is
+        // rounding: the state stays and the rounds stall.
+        if (mu >= 1.0)
+            return std::nullopt;
+        mu = std::min(1.0, mu / mu_factor);
+    }
+}
+
+void FitLoop::record(const State& state, double mu, double start)
+{
+    FitRound round;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const FootPoint& foot = state.feet[i];
+        sum += weights[i] * foot.distance * foot.distance;
+        round.max = std::max(round.max, foot.distance);
+        if (foot.where.quad != where[i].quad)
+            ++round.crossed;
+        where[i] = foot.where;
+    }
+    round.rms = std::sqrt(sum);
+    round.fairness = round_fairness_;
+    round.damping = mu;
+    round.seconds = now() - start;
+    summary.rounds.push_back(round);
+    context_.progress(static_cast<double>(summary.rounds.size()) / options_.max_rounds);
+}
+
+Status FitLoop::run()
+{
+    summary.unknowns = reduced_.free_count();
+    summary.samples = static_cast<Index>(points.size());
+    std::vector<double> count(network_.complex.quad_count(), 0.0);
+    for (const DomainPoint& d : where)
+        count[d.quad] += 1.0;
+    floor_.resize(count.size());
+    for (std::size_t q = 0; q < count.size(); ++q) {
+        const double sparse =
+            sparse_fairness *
+            std::pow(sparse_samples / std::max(count[q], sparse_samples), sparse_power);
+        floor_[q] = std::clamp(sparse, options_.fairness_floor, options_.fairness);
+    }
+
+    double start = now();
+    State state;
+    set_quad_share(nullptr);
+    set_fairness(0);
+    if (const auto error = first_round(state))
+        return error;
+    set_quad_share(&state.surface);
+    record(state, 1.0, start);
+
+    const bool tangent = options_.rows == DistanceRows::tangent && coupled_affordable_;
+    double mu = tangent ? first_mu : 1.0;
+    summary.termination = "round_limit";
+    for (int round = 1; round < options_.max_rounds; ++round) {
+        start = now();
+        const double before = summary.rounds.back().rms;
+        if (const auto error = next_round(round, state, mu))
+            return error;
+        record(state, mu, start);
+        const bool schedule_done =
+            (!tangent || mu <= mu_floor) && round_fairness_ <= options_.fairness_floor;
+        const double after = summary.rounds.back().rms;
+        if (round + 1 >= least_rounds && schedule_done &&
+            after >= (1.0 - options_.stall) * before) {
+            summary.termination = "stalled";
+            break;
+        }
+        if (tangent)
+            mu = std::max(mu_floor, mu_factor * mu);
+    }
+    unknowns = std::move(state.unknowns);
+    return std::nullopt;
+}
+
+} // namespace bot2nurbs

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bot2nurbs/fit_network.h"
+#include "fit/foot_point.h"
+#include "fit/normal_system.h"
+
+#include <vector>
+
+namespace bot2nurbs {
+
+//! The rounds of a fit, in normalised units: points in a unit box, weights that sum to one.
+class FitLoop {
+public:
+    FitLoop(const SplineNetwork& network, const ReducedNetwork& reduced, const FitOptions& options,
+            Context& context);
+
+    // In.
+    std::vector<Vec3> points;
+    std::vector<double> weights;
+    // In and out.
+    std::vector<DomainPoint> where;
+    // Out.
+    std::vector<Vec3> unknowns; //!< The free ones.
+    FitSummary summary;
+
+    //! Errors: fit_failed, cancelled.
+    Status run();
+
+private:
+    //! Surface, feet and energies for one set of unknowns.
+    struct State {
+        std::vector<Vec3> unknowns;
+        SplineSurface surface;
+        std::vector<FootPoint> feet;
+        std::vector<double> quad_energy; //!< Thin-plate energy, unweighted.
+    };
+
+    Status first_round(State& state);
+    Status next_round(int round, State& state, double& mu);
+    //! Solves from `state` with the given rows. Falls back to QR where that is the answer.
+    NormalSystem::Solution solve(const State& state, const std::vector<FitRow>& rows, double mu);
+    //! The state after moving the unknowns; no feet when cancelled.
+    State moved(const State& state, const std::vector<Vec3>& move) const;
+    std::vector<FitRow> rows_at(const State& state) const;
+    //! Huber weights from the distances; all one unless robust.
+    std::vector<double> robust_factors(const State& state) const;
+    double objective(const State& state, const std::vector<double>& factors) const;
+    void set_quad_share(const SplineSurface* surface);
+    void set_fairness(int round);
+    void record(const State& state, double mu, double start);
+
+    const SplineNetwork& network_;
+    const ReducedNetwork& reduced_;
+    const FitOptions& options_;
+    Context& context_;
+    NormalSystem system_;
+    std::vector<double> quad_share_; //!< Per quad: its share of the area, divided by 16.
+    std::vector<double> floor_;      //!< Per quad: least fairness.
+    std::vector<double> fairness_;   //!< Per quad: this round's factor of its energy.
+    double round_fairness_ = 0.0;
+    bool coupled_affordable_ = true;
+};
+
+} // namespace bot2nurbs

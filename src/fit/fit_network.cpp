@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "bot2nurbs/fit_network.h"
+
+#include "fit/fit_loop.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bot2nurbs {
+
+namespace {
+
+//! The first solve and four corrections, as \cite eck_hoppe_1996 used.
+constexpr int least_rounds = 5;
+
+Status check_samples(const SplineNetwork& network, const SurfaceSampleSet& samples)
+{
+    const std::size_t n = samples.size();
+    if (n == 0 || network.unknown_count == 0)
+        return Error{ErrorCode::empty_input, "there is nothing to fit", invalid_index};
+    if (samples.weights.size() != n || samples.domain.size() != n)
+        return Error{ErrorCode::bad_geometry, "samples without weights or domain parameters",
+                     invalid_index};
+    for (std::size_t i = 0; i < n; ++i) {
+        const DomainPoint& d = samples.domain[i];
+        if (!is_finite(samples.positions[i]) || !(samples.weights[i] > 0.0) ||
+            !std::isfinite(samples.weights[i]) || d.quad >= network.complex.quad_count() ||
+            !(d.u >= 0.0 && d.u <= 1.0 && d.v >= 0.0 && d.v <= 1.0))
+            return Error{ErrorCode::bad_geometry,
+                         "sample " + std::to_string(i) +
+                             " has a position, weight or parameter out of range",
+                         static_cast<Index>(i)};
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+std::optional<Error> FitOptions::check() const
+{
+    const auto bad = [](const char* what) {
+        return Error{ErrorCode::bad_option, what, invalid_index};
+    };
+    if (max_rounds < least_rounds)
+        return bad("fit: max_rounds must be at least 5");
+    if (!(fairness > 0.0) || !std::isfinite(fairness))
+        return bad("fit: fairness must be positive");
+    if (!(fairness_floor > 0.0) || fairness_floor > fairness)
+        return bad("fit: fairness_floor must be positive and at most fairness");
+    if (!(stall >= 0.0 && stall < 1.0))
+        return bad("fit: stall must be in [0, 1)");
+    if (!(condition_limit >= 1.0))
+        return bad("fit: condition_limit must be at least 1");
+    return std::nullopt;
+}
+
+Result<FitResult> fit_network(const SplineNetwork& network, SurfaceSampleSet& samples,
+                              const FitOptions& options, Context& context)
+{
+    if (const auto error = options.check())
+        return *error;
+    if (const auto error = check_samples(network, samples))
+        return *error;
+    // A unit box about the origin, and weights that sum to one: every number below is of order one.
+    Box3 box;
+    for (const Vec3& p : samples.positions)
+        box.add(p);
+    const Vec3 size = box.max - box.min, center = box.center();
+    const double extent = std::max({size.x, size.y, size.z});
+    if (!(extent > 0.0))
+        return Error{ErrorCode::bad_geometry, "all samples lie on one point", invalid_index};
+    double weight_sum = 0.0;
+    for (const double w : samples.weights)
+        weight_sum += w;
+    auto reduced = ReducedNetwork::build(network);
+    if (!reduced)
+        return reduced.error();
+
+    FitLoop loop(network, *reduced, options, context);
+    loop.points.resize(samples.size());
+    loop.weights.resize(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        loop.points[i] = (samples.positions[i] - center) / extent;
+        loop.weights[i] = samples.weights[i] / weight_sum;
+    }
+    loop.where = samples.domain;
+    if (const auto error = loop.run())
+        return *error;
+
+    FitResult result;
+    result.summary = std::move(loop.summary);
+    for (FitRound& round : result.summary.rounds) {
+        round.rms *= extent;
+        round.max *= extent;
+    }
+    // Undone on the free unknowns, so that the eliminated ones satisfy their rows to rounding.
+    for (Index i = 0; i < reduced->free_count(); ++i) {
+        Vec3& x = loop.unknowns[i];
+        x = extent * x + (reduced->is_point(i) ? center : Vec3{});
+    }
+    result.unknowns = reduced->expand(loop.unknowns);
+    result.surface = SplineSurface(network, result.unknowns);
+    samples.domain = std::move(loop.where);
+    return result;
+}
+
+} // namespace bot2nurbs

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bot2nurbs/context.h"
+#include "fit/reduced_network.h"
+#include "fit/scaled_factor.h"
+
+#include <vector>
+
+namespace bot2nurbs {
+
+//! One sample as a round sees it: a place on a Bezier piece and what is wanted there.
+struct FitRow {
+    Index piece = invalid_index;
+    double s = 0.0, t = 0.0; //!< Parameters in the piece, in [0, 1].
+    double weight = 0.0;
+    Vec3 residual; //!< Sample minus surface point: the wanted move.
+    Vec3 normal;   //!< Unit normal of the surface there; zero: all directions count alike.
+};
+
+//! Rows grouped by piece: rows of piece p are order[offset[p]] .. order[offset[p + 1] - 1], in the
+//! order of the samples.
+struct RowsByPiece {
+    std::vector<std::size_t> offset;
+    std::vector<Index> order;
+};
+RowsByPiece group_by_piece(const std::vector<FitRow>& rows, Index piece_count);
+
+//! The quadratic problem of one round: rows, the current coefficients, and fairness per quad.
+//!
+//! Over moves d of the free unknowns it minimises
+//!   sum_i w_i [(1 - mu) (n_i . (r_i - d_i))^2 + mu |r_i - d_i|^2] + sum_q f_q E_q(x + d)
+//! with d_i the surface's move at row i and E_q the exact thin-plate energy of quad q.
+struct RoundProblem {
+    const std::vector<FitRow>* rows = nullptr;
+    const RowsByPiece* groups = nullptr;
+    const std::vector<Vec3>* bezier = nullptr;     //!< 169 per quad; empty: all zero.
+    const std::vector<double>* fairness = nullptr; //!< f_q.
+    double mu = 1.0;                               //!< 1: point-distance rows.
+};
+
+//! The normal equations of a round, assembled piece by piece in Bezier coefficients and scattered
+//! into a pattern that is analysed once. With mu = 1 the x, y and z parts decouple and share one
+//! matrix; otherwise 3 x 3 blocks couple them in the same pattern. Cost linear in rows and pieces.
+class NormalSystem {
+public:
+    explicit NormalSystem(const ReducedNetwork& network);
+
+    Index size() const { return static_cast<Index>(place_.size()); }
+    //! Entries of the scalar factor (a 3 x 3 coupled one has nine times as many).
+    std::size_t factor_entries() const { return factor_entries_; }
+    //! Multiplications of one scalar factorisation; 27 times as many for a coupled one.
+    double factor_work() const { return factor_work_; }
+
+    //! Outcome of a solve: the moves, or none when the factorisation failed, the condition exceeded
+    //! `condition_limit`, or the context was cancelled (ask the context).
+    struct Solution {
+        bool ok = false;
+        std::vector<Vec3> move; //!< Per free unknown.
+        double condition = 0.0;
+    };
+    Solution solve(const RoundProblem& problem, double condition_limit, const Context& context);
+
+private:
+    bool assemble(const RoundProblem& problem, bool coupled, const Context& context);
+    Solution solve_decoupled(double condition_limit, const Context& context);
+    Solution solve_coupled(double condition_limit, const Context& context);
+
+    const ReducedNetwork& network_;
+    std::vector<int> place_;  //!< Per free unknown: its column in the fill-reducing order.
+    std::vector<int> column_; //!< Upper pattern in that order, compressed columns.
+    std::vector<int> row_;
+    std::vector<std::size_t> pair_offset_; //!< Per piece: first of its slots.
+    std::vector<int> slot_;                //!< Per piece and pair (i <= j): entry of the pattern.
+    std::vector<double> value_;
+    std::vector<double> right_; //!< 3 per column.
+    std::size_t factor_entries_ = 0;
+    double factor_work_ = 0.0;
+    ScaledFactor scalar_, coupled_;
+};
+
+} // namespace bot2nurbs
