@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "layout/patch_complex.h"
+#include "layout/tiles.h"
+
+namespace bot2nurbs {
+
+//! The triangular base complex K_tri dual to tiles: a vertex per site, a path per cut between two
+//! tiles, a face per junction. Each tile is mapped to a convex polygon, its corners the junctions;
+//! straight spokes run from the site to the middle of each cut. The spokes of the two tiles that
+//! share a cut form a path; the sectors around a junction form its face, a disk by construction.
+//! \cite eck_1995, section 4. \pre tiles.violations() is empty.
+Result<PatchComplex> build_base_complex(const Tiles& tiles, Context& context);
+
+} // namespace bot2nurbs

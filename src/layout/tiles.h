@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bot2nurbs/context.h"
+#include "bot2nurbs/manifold_mesh.h"
+
+#include <vector>
+
+namespace bot2nurbs {
+
+//! Voronoi tiles of a mesh, by labels on its vertices (Eck et al. 1995, section 4). Since a face
+//! has at most three labels, at most three tiles meet at a point.
+//!
+//! Distances grow from all sites at once over edges and, across a face, from the unfolded source of
+//! two corners, so that they do not follow the grain of the mesh. They are measured in the metric
+//! scaled by `density`: where it is two, tiles are half as wide.
+class Tiles {
+public:
+    Tiles(const ManifoldMesh& mesh, std::vector<double> density);
+
+    const ManifoldMesh& mesh() const { return mesh_; }
+    const std::vector<Index>& sites() const { return sites_; }  //!< Per tile: its mesh vertex.
+    const std::vector<Index>& labels() const { return label_; } //!< Per mesh vertex: its tile.
+    const std::vector<double>& distances() const { return distance_; }
+
+    //! Starts anew from the given sites. Cost O(n log n).
+    void grow(std::vector<Index> sites);
+    //! Adds sites, changing only what is nearer to them.
+    void add(const std::vector<Index>& sites);
+    //! Adds the vertex farthest from all sites until there are `count`.
+    void add_farthest(Index count);
+    //! Moves every site to the vertex of its tile nearest to the tile's centroid, and grows anew
+    //! (one round of Lloyd's relaxation).
+    void relax();
+
+    //! Vertices that must become sites because a condition fails: a tile that is not a disk, two
+    //! tiles that share more than one connected cut, a tile with fewer than three neighbours. Empty
+    //! when the dual of the tiles is a simplicial complex. Adding them again and again ends: with
+    //! every vertex a site the dual is the mesh itself.
+    std::vector<Index> violations() const;
+
+    //! Vertices of each tile, as one list in tile order: members[offset[i]] ..
+    //! members[offset[i+1]-1].
+    void list_members(std::vector<Index>& offset, std::vector<Index>& members) const;
+
+private:
+    void propagate(const std::vector<Index>& seeds);
+
+    const ManifoldMesh& mesh_;
+    std::vector<double> density_;
+    std::vector<double> area_; // Per vertex: a third of the faces around.
+    std::vector<Index> sites_;
+    std::vector<Index> label_;
+    std::vector<double> distance_;
+};
+
+} // namespace bot2nurbs
