@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "bot2nurbs/check_mesh.h"
 #include "bot2nurbs/context.h"
 #include "bot2nurbs/fit_network.h"
 #include "bot2nurbs/report.h"
 #include "bot2nurbs/spline_network.h"
+#include "bot2nurbs/write_brep.h"
 
 #include <cstdint>
 #include <optional>
@@ -16,7 +18,8 @@ namespace bot2nurbs {
 //! What convert() reads, makes and writes. Paths are as the operating system takes them.
 struct ConvertOptions {
     std::string input; //!< Mesh file: .stl, .obj, .ply or .off.
-    //! B-Rep files: .3dm, .step, .stp or .brep. May be empty when domain_out is given.
+    //! B-Rep files: .3dm, .step, .stp or .brep. May be empty when domain_out
+    //! or tessellation is given.
     std::vector<std::string> outputs;
 
     //! Wanted number of patches of each component; by default chosen from the shape. At least 6.
@@ -30,20 +33,18 @@ struct ConvertOptions {
     bool repair = true;  //!< Make harmless repairs; false: reject an input that needs any.
     bool strict = false; //!< Reject self-intersecting input instead of warning.
 
-    //! Domain files to use instead of the automatic layout, each for the component whose signature
-    //! it carries. A file that belongs to no component is refused.
-    std::vector<std::string> domain_in;
-    //! Where to write the domain. With several components the second becomes "name-2.json", and so
-    //! on.
+    //! Domain file to use instead of the automatic layout; it must hold a domain for each
+    //! component and none for others.
+    std::optional<std::string> domain_in;
+    //! Where to write the domains of all components.
     std::optional<std::string> domain_out;
     //! Where to write a tessellation (binary PLY) for inspection: per vertex the normal, patch,
     //! parameters, signed distance to the source, and at patch corners the valence.
     std::optional<std::string> tessellation;
 
-    std::string units;            //!< Of the coordinates ("mm"); empty: as the input says, else mm.
-    int archive_version = 50;     //!< Of .3dm: 4, 5, 6, 7, 8 as 4, 50, 60, 70, 80.
-    std::string step_schema = ""; //!< "AP214" or "AP242"; empty: AP242.
-    std::uint64_t seed = 0;       //!< Reserved for tie-breaking experiments.
+    //! Archive version, STEP schema, unit. An empty unit: as the input says, else millimetres.
+    WriteOptions write;
+    std::uint64_t seed = 0; //!< Reserved for tie-breaking experiments.
 
     //! The first option that is out of its range, or contradicts another, or names a file that
     //! cannot be written: what can be known before any work is done.
@@ -62,5 +63,18 @@ struct ConvertOptions {
 //! Cancel through the context. Errors: those of the stages; open_mesh, self_intersecting (with
 //! strict), stale_domain, bad_option, cannot_write.
 Result<ConvertReport> convert(const ConvertOptions& options, Context& context);
+
+//! What the first steps of convert() say of an input.
+struct InputReport {
+    MeshReport mesh;                 //!< Of the file as it is.
+    std::vector<RepairNote> repairs; //!< What convert() would change.
+    std::optional<Error> rejection;  //!< Why convert() would refuse it; absent when it would not.
+};
+
+//! Reads and checks `options.input` without converting it. Errors: those of read_mesh; cancelled.
+Result<InputReport> check_input(const ConvertOptions& options, Context& context);
+
+//! The report as JSON, schema "bot2nurbs.check/1".
+std::string input_report_to_json(const ConvertOptions& options, const InputReport& report);
 
 } // namespace bot2nurbs

@@ -80,4 +80,7 @@ std::string report_to_json(const ConvertOptions& options, const ConvertReport& r
 std::string failure_to_json(const ConvertOptions& options, const Error& error,
                             const std::vector<StageRecord>& stages);
 
+//! Writes a report whole or not at all. Errors: cannot_write.
+Status write_report(const std::string& json, const std::string& path);
+
 } // namespace bot2nurbs

@@ -3,6 +3,7 @@
 
 #include "bot2nurbs/convert.h"
 #include "bot2nurbs/version.h"
+#include "io/atomic_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,6 +35,14 @@ Json index_or_null(Index i)
     return i == invalid_index ? Json(nullptr) : Json(i);
 }
 
+Json error_json(const Error& error)
+{
+    return {{"code", name(error.code)},
+            {"message", error.message},
+            {"element", index_or_null(error.element)},
+            {"exit_code", exit_code(error.code)}};
+}
+
 Json point_json(const Vec3& p)
 {
     return Json::array({p.x, p.y, p.z});
@@ -56,11 +65,11 @@ Json options_json(const ConvertOptions& o)
     j["robust"] = o.fit.robust;
     j["repair"] = o.repair;
     j["strict"] = o.strict;
-    j["domain_in"] = o.domain_in;
+    j["domain_in"] = o.domain_in ? Json(*o.domain_in) : Json(nullptr);
     j["domain_out"] = o.domain_out ? Json(*o.domain_out) : Json(nullptr);
-    j["units"] = o.units;
-    j["archive_version"] = o.archive_version;
-    j["step_schema"] = o.step_schema.empty() ? "AP242" : o.step_schema;
+    j["units"] = o.write.units;
+    j["archive_version"] = o.write.archive_version;
+    j["step_schema"] = o.write.step_schema == StepSchema::ap242 ? "AP242" : "AP214";
     j["seed"] = o.seed;
     return j;
 }
@@ -355,12 +364,57 @@ std::string failure_to_json(const ConvertOptions& options, const Error& error,
     j["version"] = BOT2NURBS_VERSION;
     j["options"] = options_json(options);
     j["input"] = {{"path", options.input}};
-    j["error"] = {{"code", name(error.code)},
-                  {"message", error.message},
-                  {"element", index_or_null(error.element)},
-                  {"exit_code", exit_code(error.code)}};
+    j["error"] = error_json(error);
     j["stages"] = stages_json(stages);
     return text_of(j);
+}
+
+std::string input_report_to_json(const ConvertOptions& options, const InputReport& report)
+{
+    const MeshReport& m = report.mesh;
+    Json j;
+    j["schema"] = "bot2nurbs.check/1";
+    j["version"] = BOT2NURBS_VERSION;
+    j["input"] = {{"path", options.input},
+                  {"vertices", m.vertices},
+                  {"faces", m.faces},
+                  {"closed", m.closed},
+                  {"manifold", m.manifold},
+                  {"orientable", m.orientable},
+                  {"oriented", m.oriented},
+                  {"sharp_edges", m.sharp_edges},
+                  {"self_intersecting_pairs", m.self_intersecting_pairs}};
+    j["components"] = Json::array();
+    for (const ComponentReport& c : m.components)
+        j["components"].push_back({{"first_face", index_or_null(c.first_face)},
+                                   {"faces", c.faces},
+                                   {"vertices", c.vertices},
+                                   {"closed", c.closed},
+                                   {"orientable", c.orientable},
+                                   {"oriented", c.oriented},
+                                   {"genus", c.genus},
+                                   {"boundary_loops", c.boundary_loops},
+                                   {"volume", c.volume}});
+    j["boundary_loops"] = m.boundary_loops;
+    j["self_intersections"] = m.self_intersections;
+    j["defects"] = Json::array();
+    for (const MeshDefect& d : m.defects)
+        j["defects"].push_back({{"code", d.code},
+                                {"message", d.message},
+                                {"element", index_or_null(d.element)},
+                                {"count", d.count}});
+    j["repairs"] = Json::array();
+    for (const RepairNote& note : report.repairs)
+        j["repairs"].push_back(repair_json(note));
+    j["accepted"] = !report.rejection;
+    if (report.rejection)
+        j["rejection"] = error_json(*report.rejection);
+    return text_of(j);
+}
+
+Status write_report(const std::string& json, const std::string& path)
+{
+    return write_whole_file(path, json);
 }
 
 } // namespace bot2nurbs

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+#include "convert/component.h"
+
+#include "bot2nurbs/domain_samples.h"
+#include "bot2nurbs/layout.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <utility>
+
+namespace bot2nurbs {
+
+namespace {
+
+//! Moves and scales between the coordinates of the input and the unit box.
+struct Frame {
+    Vec3 centre;
+    double size = 1.0; //!< Longest side of the component's box.
+
+    explicit Frame(const Box3& box) : centre(box.center())
+    {
+        const Vec3 side = box.max - box.min;
+        size = std::max({side.x, side.y, side.z});
+    }
+    Vec3 to_unit(const Vec3& p) const { return (p - centre) / size; }
+    Vec3 from_unit(const Vec3& p) const { return size * p + centre; }
+};
+
+Result<ManifoldMesh> unit_mesh(const ManifoldMesh& mesh, const Frame& frame)
+{
+    std::vector<Vec3> positions = mesh.positions();
+    for (Vec3& p : positions)
+        p = frame.to_unit(p);
+    return ManifoldMesh::build(std::move(positions), mesh.triangles());
+}
+
+//! Puts the carrier's vertices where its provenance says they are on the unit mesh. A domain that
+//! was read and the same domain fresh from the layout then agree to the bit.
+Status place_carrier(CarrierMesh& carrier, const ManifoldMesh& unit)
+{
+    if (!carrier.refined) {
+        carrier = CarrierMesh::from_source(unit);
+        return {};
+    }
+    std::vector<Vec3> positions(carrier.mesh.vertex_count());
+    for (Index v = 0; v < carrier.mesh.vertex_count(); ++v)
+        positions[v] =
+            v < unit.vertex_count() ? unit.position(v) : unit.at(carrier.vertex_source[v]);
+    Result<ManifoldMesh> mesh = ManifoldMesh::build(std::move(positions), carrier.mesh.triangles());
+    if (!mesh)
+        return mesh.error();
+    carrier.mesh = std::move(*mesh);
+    return {};
+}
+
+DomainReport describe(const QuadDomain& domain)
+{
+    DomainReport report;
+    const QuadComplex& k = domain.complex;
+    report.source = domain.origin;
+    report.signature = domain.source_signature;
+    report.faces = k.quad_count();
+    report.edges = k.edge_count();
+    report.vertices = k.vertex_count();
+    report.extraordinary = k.extraordinary_count();
+    report.max_valence = k.max_valence();
+    report.valences.assign(report.max_valence + 1, 0);
+    for (Index v = 0; v < k.vertex_count(); ++v)
+        ++report.valences[k.valence(v)];
+    return report;
+}
+
+void to_input_units(DistanceStatistics& s, const Frame& frame)
+{
+    s.max *= frame.size;
+    s.rms *= frame.size;
+    s.worst = frame.from_unit(s.worst);
+}
+
+void to_input_units(FitSummary& fit, const Frame& frame)
+{
+    for (FitRound& round : fit.rounds) {
+        round.rms *= frame.size;
+        round.max *= frame.size;
+    }
+}
+
+void log_rounds(const FitSummary& fit, const Context& context)
+{
+    for (std::size_t i = 0; i < fit.rounds.size(); ++i) {
+        const FitRound& r = fit.rounds[i];
+        context.log(LogLevel::info,
+                    fmt::format("fit round {}: rms {:.4g}, max {:.4g}, fairness {:.2g}, {} samples "
+                                "changed patch, {:.2f} s",
+                                i + 1, r.rms, r.max, r.fairness, r.crossed, r.seconds));
+    }
+}
+
+} // namespace
+
+Result<ConvertedComponent> convert_component(const MeshComponent& component,
+                                             std::optional<QuadDomain> supplied,
+                                             const ConvertOptions& options,
+                                             const std::vector<KnotForm>& forms,
+                                             const std::string& stage_suffix, Context& context)
+{
+    const auto stage = [&](const char* name) { context.begin_stage(name + stage_suffix); };
+    const Frame frame(component.mesh.box());
+    const Result<ManifoldMesh> unit = unit_mesh(component.mesh, frame);
+    if (!unit)
+        return unit.error();
+
+    ConvertedComponent result;
+    ComponentOutcome& outcome = result.outcome;
+    outcome.first_face = component.source_face.empty() ? invalid_index : component.source_face[0];
+    outcome.vertices = component.mesh.vertex_count();
+    outcome.faces = component.mesh.face_count();
+    outcome.genus = component.genus;
+    outcome.boundary_loops = component.boundary_loops;
+    outcome.diagonal = component.mesh.box().diagonal();
+
+    stage("layout");
+    if (supplied) {
+        result.domain = std::move(*supplied);
+    } else {
+        LayoutOptions layout_options;
+        layout_options.patches = options.patches;
+        layout_options.seed = options.seed;
+        Result<LayoutResult> layout = build_layout(*unit, layout_options, context);
+        if (!layout)
+            return layout.error();
+        result.domain = std::move(layout->domain);
+        result.domain.source_signature = signature(component.mesh);
+        outcome.layout = layout->summary;
+    }
+    if (Status failed = place_carrier(result.domain.carrier, *unit))
+        return *failed;
+    outcome.domain = describe(result.domain);
+    if (forms.empty())
+        return result;
+
+    stage("charts");
+    const Result<std::vector<QuadChart>> charts = compute_charts(*unit, result.domain, context);
+    if (!charts)
+        return charts.error();
+    stage("samples");
+    Result<SurfaceSampleSet> samples = make_samples(*unit, *charts, {}, context);
+    if (!samples)
+        return samples.error();
+
+    stage("fit");
+    const Result<SplineNetwork> network =
+        build_spline_network(result.domain.complex, options.spline);
+    if (!network)
+        return network.error();
+    Result<FitResult> fit = fit_network(*network, *samples, options.fit, context);
+    if (!fit)
+        return fit.error();
+    outcome.fit = std::move(fit->summary);
+    to_input_units(outcome.fit, frame);
+    log_rounds(outcome.fit, context);
+
+    stage("measure");
+    Result<Deviation> deviation =
+        measure_deviation(*unit, result.domain.complex, fit->surface, context);
+    if (!deviation)
+        return deviation.error();
+    outcome.deviation = *deviation;
+    to_input_units(outcome.deviation.source_to_surface, frame);
+    to_input_units(outcome.deviation.surface_to_source, frame);
+    result.surface = std::move(fit->surface);
+    result.surface.transform(frame.size, frame.centre);
+    // Of the coordinates that are written: rounding far from the origin is part of the result.
+    outcome.continuity = measure_continuity(result.domain.complex, result.surface);
+
+    stage("brep");
+    for (const KnotForm form : forms) {
+        Result<Brep> brep = assemble_brep(result.domain.complex, result.surface, form);
+        if (!brep)
+            return brep.error();
+        result.breps.push_back(std::move(*brep));
+    }
+    const Brep& first = result.breps.front();
+    outcome.brep = check_brep(first);
+    outcome.brep_faces = static_cast<Index>(first.faces.size());
+    outcome.brep_edges = static_cast<Index>(first.edges.size());
+    outcome.brep_vertices = static_cast<Index>(first.vertices.size());
+    if (!outcome.brep.solid)
+        return Error{ErrorCode::brep_failed,
+                     "the B-Rep is no solid" + (outcome.brep.defects.empty()
+                                                    ? std::string()
+                                                    : ": " + outcome.brep.defects[0].message),
+                     outcome.brep.defects.empty() ? invalid_index
+                                                  : outcome.brep.defects[0].element};
+    return result;
+}
+
+} // namespace bot2nurbs

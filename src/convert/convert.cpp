@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: MIT
+#include "bot2nurbs/convert.h"
+
+#include "bot2nurbs/domain_file.h"
+#include "convert/component.h"
+#include "convert/input.h"
+#include "convert/tessellation.h"
+#include "io/atomic_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include <unistd.h>
+
+namespace bot2nurbs {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// The cube has six faces; a closed domain of inner valences of at least three cannot have fewer
+// unless it winds round a handle.
+constexpr Index fewest_patches = 6;
+
+enum class Format { archive_3dm, step, occ_brep };
+
+std::optional<Format> format_of(const std::string& path)
+{
+    std::string extension = fs::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension == ".3dm")
+        return Format::archive_3dm;
+    if (extension == ".step" || extension == ".stp")
+        return Format::step;
+    if (extension == ".brep")
+        return Format::occ_brep;
+    return std::nullopt;
+}
+
+const char* name_of(Format format)
+{
+    switch (format) {
+    case Format::archive_3dm: return "3dm";
+    case Format::step: return "step";
+    case Format::occ_brep: return "brep";
+    }
+    return "";
+}
+
+//! The knots a format gets: those asked for, or what its readers take best.
+KnotForm form_of(Format format, const ConvertOptions& options)
+{
+    if (options.knots)
+        return *options.knots;
+    if (format == Format::archive_3dm || options.spline == SplineScheme::eck_hoppe)
+        return KnotForm::paper;
+    return KnotForm::c1;
+}
+
+Status check_folder(const std::string& path)
+{
+    const fs::path folder =
+        fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+    std::error_code failed;
+    if (!fs::is_directory(folder, failed))
+        return Error{ErrorCode::cannot_write,
+                     fmt::format("cannot write {}: there is no folder {}", path, folder.string()),
+                     invalid_index};
+    if (fs::is_directory(path, failed))
+        return Error{ErrorCode::cannot_write, fmt::format("cannot write {}: it is a folder", path),
+                     invalid_index};
+    // A device (/dev/stdout) is written in place and needs no folder that can be written.
+    const bool device = fs::exists(path, failed) && !fs::is_regular_file(path, failed);
+    if (!device && ::access(folder.c_str(), W_OK | X_OK) != 0)
+        return Error{
+            ErrorCode::cannot_write,
+            fmt::format("cannot write {}: no permission to write in {}", path, folder.string()),
+            invalid_index};
+    return {};
+}
+
+Error bad_option(std::string message)
+{
+    return {ErrorCode::bad_option, std::move(message), invalid_index};
+}
+
+Result<std::string> read_text(const std::string& path)
+{
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        return Error{ErrorCode::cannot_read, "cannot open " + path, invalid_index};
+    std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    if (file.bad())
+        return Error{ErrorCode::cannot_read, "cannot read " + path, invalid_index};
+    return text;
+}
+
+void add_input_warnings(const PreparedInput& input, ConvertReport& report)
+{
+    for (const RepairNote& note : input.mesh.notes) {
+        if (note.warning)
+            report.warnings.push_back({note.code, note.message, invalid_index});
+        else
+            report.repairs.push_back(note);
+    }
+    if (input.found.self_intersecting_pairs > 0) {
+        const auto& [f, g] = input.found.self_intersections.front();
+        report.warnings.push_back(
+            {"self_intersection",
+             fmt::format("{} pairs of faces cross each other (first: faces {} and {}): the result "
+                         "may cross itself there too. --strict rejects such input",
+                         input.found.self_intersecting_pairs, f, g),
+             f});
+    }
+    if (input.found.sharp_edges > 0)
+        report.warnings.push_back(
+            {"sharp_edges",
+             fmt::format("{} edges turn by more than 40 degrees: they are rounded, not kept",
+                         input.found.sharp_edges),
+             invalid_index});
+    for (std::size_t c = 0; c < input.mesh.components.size(); ++c)
+        if (input.mesh.components[c].cavity)
+            report.warnings.push_back(
+                {"cavity",
+                 fmt::format("component {} is the wall of a hollow in component {}: it is written "
+                             "as a solid of its own",
+                             c + 1, input.mesh.components[c].surrounded_by + 1),
+                 input.mesh.components[c].source_face.front()});
+}
+
+//! The supplied domains, one per component, or none.
+Result<std::vector<QuadDomain>> supplied_domains(const ConvertOptions& options,
+                                                 const RepairedMesh& mesh)
+{
+    if (!options.domain_in)
+        return std::vector<QuadDomain>{};
+    const Result<std::string> text = read_text(*options.domain_in);
+    if (!text)
+        return text.error();
+    std::vector<ManifoldMesh> sources;
+    for (const MeshComponent& c : mesh.components)
+        sources.push_back(c.mesh);
+    Result<std::vector<QuadDomain>> domains = domains_from_json(*text, sources);
+    if (!domains) {
+        Error error = domains.error();
+        error.message = *options.domain_in + ": " + error.message;
+        return error;
+    }
+    return domains;
+}
+
+struct PendingFile {
+    OutputFile file;
+    std::string bytes;
+};
+
+//! The bytes of every file asked for.
+Result<std::vector<PendingFile>> make_files(const ConvertOptions& options, const std::string& units,
+                                            const RepairedMesh& mesh,
+                                            const std::vector<KnotForm>& forms,
+                                            std::vector<ConvertedComponent>& components,
+                                            Context& context)
+{
+    std::vector<PendingFile> files;
+    WriteOptions write = options.write;
+    write.units = units;
+    write.title = fs::path(options.input).stem().string();
+    const auto add = [&](const std::string& path, const char* format, std::string bytes) {
+        files.push_back({{path, format, bytes.size()}, std::move(bytes)});
+    };
+    for (const std::string& path : options.outputs) {
+        if (context.cancelled())
+            return Context::cancelled_error("write");
+        const Format format = *format_of(path);
+        const std::size_t form = static_cast<std::size_t>(
+            std::find(forms.begin(), forms.end(), form_of(format, options)) - forms.begin());
+        std::vector<Brep> breps;
+        for (std::size_t c = 0; c < components.size(); ++c) {
+            breps.push_back(components[c].breps[form]);
+            breps.back().name =
+                write.title + (components.size() > 1 ? "-" + std::to_string(c + 1) : "");
+        }
+        Result<std::string> bytes = format == Format::archive_3dm ? brep_to_3dm(breps, write)
+                                    : format == Format::step      ? brep_to_step(breps, write)
+                                                                  : brep_to_occ_brep(breps, write);
+        if (!bytes)
+            return bytes.error();
+        add(path, name_of(format), std::move(*bytes));
+    }
+    if (options.tessellation) {
+        std::vector<TessellationPart> parts;
+        for (std::size_t c = 0; c < components.size(); ++c)
+            parts.push_back(
+                {&mesh.components[c].mesh, &components[c].domain.complex, &components[c].surface});
+        Result<std::string> bytes = tessellation_to_ply(parts, context);
+        if (!bytes)
+            return bytes.error();
+        add(*options.tessellation, "ply", std::move(*bytes));
+    }
+    if (options.domain_out) {
+        std::vector<QuadDomain> domains;
+        for (ConvertedComponent& c : components)
+            domains.push_back(std::move(c.domain));
+        add(*options.domain_out, "domain", domains_to_json(domains));
+    }
+    return files;
+}
+
+} // namespace
+
+std::optional<Error> ConvertOptions::check() const
+{
+    if (input.empty())
+        return bad_option("no input file is named");
+    if (outputs.empty() && !domain_out && !tessellation)
+        return bad_option("no output file is named");
+    for (const std::string& path : outputs) {
+        const std::optional<Format> format = format_of(path);
+        if (!format)
+            return bad_option(fmt::format("the output {} has no known extension: use .3dm, .step, "
+                                          ".stp or .brep",
+                                          path));
+        if (form_of(*format, *this) == KnotForm::c1 && spline == SplineScheme::eck_hoppe)
+            return bad_option("the eck-hoppe spline has no form with C1 knots: use --knots paper");
+    }
+    if (patches && *patches < fewest_patches)
+        return bad_option(
+            fmt::format("--patches {} is too few: at least {}", *patches, fewest_patches));
+    if (patches && domain_in)
+        return bad_option("--patches steers the automatic layout: it contradicts --domain-in");
+    if (std::optional<Error> failed = fit.check())
+        return failed;
+    if (Status failed = write.check())
+        return failed;
+
+    std::vector<std::string> paths = outputs;
+    if (domain_out)
+        paths.push_back(*domain_out);
+    if (tessellation)
+        paths.push_back(*tessellation);
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        if (std::find(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), paths[i]) !=
+            paths.begin() + static_cast<std::ptrdiff_t>(i))
+            return bad_option(fmt::format("{} is to be written twice", paths[i]));
+        std::error_code unknown;
+        if (fs::equivalent(paths[i], input, unknown))
+            return bad_option(fmt::format("{} is the input: it would be overwritten", paths[i]));
+        if (Status failed = check_folder(paths[i]))
+            return failed;
+    }
+    return std::nullopt;
+}
+
+Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
+{
+    if (const std::optional<Error> failed = options.check())
+        return *failed;
+    const Result<PreparedInput> input = prepare_input(options, context);
+    if (!input)
+        return input.error();
+    const RepairedMesh& mesh = input->mesh;
+
+    ConvertReport report;
+    report.input_vertices = input->vertices;
+    report.input_faces = input->faces;
+    report.units = !options.write.units.empty() ? options.write.units
+                   : !input->units.empty()      ? input->units
+                                                : "mm";
+    report.diagonal = mesh.box.diagonal();
+    report.sharp_edges = input->found.sharp_edges;
+    add_input_warnings(*input, report);
+
+    Result<std::vector<QuadDomain>> supplied = supplied_domains(options, mesh);
+    if (!supplied)
+        return supplied.error();
+
+    // The knot forms that the outputs need, each made once.
+    std::vector<KnotForm> forms;
+    for (const std::string& path : options.outputs) {
+        const KnotForm form = form_of(*format_of(path), options);
+        if (std::find(forms.begin(), forms.end(), form) == forms.end())
+            forms.push_back(form);
+    }
+    if (forms.empty() && options.tessellation)
+        forms.push_back(form_of(Format::archive_3dm, options));
+
+    std::vector<ConvertedComponent> components;
+    const std::size_t count = mesh.components.size();
+    for (std::size_t c = 0; c < count; ++c) {
+        std::optional<QuadDomain> domain;
+        if (options.domain_in)
+            domain = std::move((*supplied)[c]);
+        const std::string suffix = count > 1 ? fmt::format(" {}/{}", c + 1, count) : "";
+        Result<ConvertedComponent> converted = convert_component(
+            mesh.components[c], std::move(domain), options, forms, suffix, context);
+        if (!converted) {
+            Error error = converted.error();
+            if (count > 1 && error.code != ErrorCode::cancelled)
+                error.message = fmt::format("component {} of {}: {}", c + 1, count, error.message);
+            return error;
+        }
+        components.push_back(std::move(*converted));
+    }
+
+    context.begin_stage("write");
+    Result<std::vector<PendingFile>> files =
+        make_files(options, report.units, mesh, forms, components, context);
+    if (!files)
+        return files.error();
+    for (const ConvertedComponent& c : components)
+        report.components.push_back(c.outcome);
+    if (context.cancelled())
+        return Context::cancelled_error("write");
+    for (const PendingFile& pending : *files) {
+        if (Status failed = write_whole_file(pending.file.path, pending.bytes))
+            return *failed;
+        report.outputs.push_back(pending.file);
+    }
+    context.end_stage();
+    report.stages = context.stages();
+    return report;
+}
+
+} // namespace bot2nurbs
