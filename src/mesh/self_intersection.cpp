@@ -15,7 +15,7 @@ namespace {
 // Faces a parallel task looks at, and tasks between two looks at the totals. Fixed, so that the
 // place where a search is cut short does not depend on the threads.
 constexpr Index faces_per_task = 256;
-constexpr Index tasks_per_round = 64;
+constexpr Index tasks_per_round = 16;
 
 // Candidate pairs (boxes that meet) after which a search is cut short: a mesh has about 8 a face;
 // only a hopeless soup has 500.
