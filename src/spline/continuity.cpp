@@ -50,7 +50,7 @@ public:
             }
         }
         const double leg = legs / std::max(12.0 * surface.patch_count(), 1.0);
-        least_width_ = std::min(noise / angle_resolution, collapse_ratio * leg);
+        least_width_ = std::min(noise / angle_resolution, std::max(collapse_ratio * leg, noise));
         const Index count = std::max<Index>(samples, 2);
         for (Index i = 0; i < count; ++i) {
             const double t = double(i) / (count - 1);
