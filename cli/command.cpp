@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+#include "command.h"
+
+#include "bot2nurbs/version.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <map>
+#include <vector>
+
+namespace bot2nurbs::cli {
+
+namespace {
+
+// openNURBS writes versions 5 to 8 of its archives as 50 to 80.
+const std::map<std::string, int> archive_versions{{"4", 4},   {"5", 50},  {"6", 60},
+                                                  {"7", 70},  {"8", 80},  {"50", 50},
+                                                  {"60", 60}, {"70", 70}, {"80", 80}};
+const std::map<std::string, KnotForm> knot_forms{{"paper", KnotForm::paper}, {"c1", KnotForm::c1}};
+const std::map<std::string, SplineScheme> schemes{{"peters", SplineScheme::peters},
+                                                  {"eck-hoppe", SplineScheme::eck_hoppe}};
+const std::map<std::string, StepSchema> step_schemas{{"AP242", StepSchema::ap242},
+                                                     {"AP214", StepSchema::ap214}};
+
+// What CLI11 asks for before it says which value is wrong.
+const char* const footer =
+    R"(Examples:
+  bot2nurbs bunny.off bunny.3dm
+  bot2nurbs kitten.obj kitten.step kitten.3dm --patches 200 --json report.json
+  bot2nurbs --check scan.stl
+
+Exit codes:
+  0 done                    4 cannot write
+  1 internal error          5 input rejected
+  2 wrong use               6 a stage failed
+  3 cannot read           130 interrupted)";
+
+template <class T> CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value,
+                                           const std::map<std::string, T>& choices,
+                                           const std::string& text)
+{
+    std::vector<std::string> names;
+    for (const auto& choice : choices)
+        names.push_back(choice.first);
+    return app
+        .add_option_function<std::string>(
+            name, [&value, &choices](const std::string& chosen) { value = choices.at(chosen); },
+            text)
+        ->check(CLI::IsMember(names));
+}
+
+} // namespace
+
+std::variant<Command, int> parse_command(int argc, char** argv)
+{
+    Command command;
+    ConvertOptions& o = command.options;
+    CLI::App app("Turns a closed triangle mesh into a watertight solid of bicubic B-spline patches "
+                 "with exact G1 joins.",
+                 "bot2nurbs");
+    app.footer(footer);
+    app.set_version_flag("--version", "bot2nurbs " BOT2NURBS_VERSION);
+
+    app.add_option("INPUT", o.input, "Mesh: .stl .obj .ply .off")->required();
+    app.add_option("OUTPUT", o.outputs, "One or more of .3dm .step .stp .brep");
+
+    const std::string surface = "Surface";
+    unsigned patches = 0;
+    CLI::Option* patches_option =
+        app.add_option("--patches", patches,
+                       "Wanted number of patches per component (default: from the shape)")
+            ->type_name("N")
+            ->group(surface);
+    KnotForm knots = KnotForm::paper;
+    CLI::Option* knots_option =
+        add_choice(app, "--knots", knots, knot_forms,
+                   "Knots to write (default: paper in .3dm, c1 in the others)")
+            ->type_name("paper|c1")
+            ->group(surface);
+    add_choice(app, "--spline", o.spline, schemes, "Spline scheme (default: peters)")
+        ->type_name("peters|eck-hoppe")
+        ->group(surface);
+    app.add_option("--rounds", o.fit.max_rounds, "Most rounds of fitting")
+        ->type_name("N")
+        ->capture_default_str()
+        ->group(surface);
+    app.add_flag("--robust", o.fit.robust, "Let outliers count less")->group(surface);
+
+    const std::string input = "Input";
+    CLI::Option* check =
+        app.add_flag("--check", "Report the defects of INPUT and convert nothing")->group(input);
+    app.add_flag("--strict", o.strict, "Reject input that crosses itself")->group(input);
+    bool no_repair = false;
+    app.add_flag("--no-repair", no_repair, "Reject input that needs a repair")->group(input);
+
+    const std::string domain = "Domain";
+    std::string domain_in, domain_out, tessellation;
+    CLI::Option* domain_in_option =
+        app.add_option("--domain-in", domain_in, "Use this domain instead of the automatic layout")
+            ->type_name("FILE")
+            ->group(domain);
+    CLI::Option* domain_out_option =
+        app.add_option("--domain-out", domain_out, "Write the domain; OUTPUT may then be left out")
+            ->type_name("FILE")
+            ->group(domain);
+    CLI::Option* validate = app.add_option("--validate-domain", command.domain,
+                                           "Check this domain against INPUT and convert nothing")
+                                ->type_name("FILE")
+                                ->group(domain);
+    app.add_option("--seed", o.seed, "Reserved: the layout does not depend on chance")
+        ->type_name("N")
+        ->group(domain);
+
+    const std::string output = "Output";
+    add_choice(app, "--archive-version", o.write.archive_version, archive_versions,
+               "Of .3dm: 4 to 8 (default: 5, for Rhino 5 and later)")
+        ->type_name("N")
+        ->group(output);
+    add_choice(app, "--step-schema", o.write.step_schema, step_schemas, "Of STEP (default: AP242)")
+        ->type_name("AP242|AP214")
+        ->group(output);
+    app.add_option("--units", o.write.units,
+                   "Unit of the coordinates: um mm cm m km in ft mi (default: mm)")
+        ->type_name("UNIT")
+        ->group(output);
+    CLI::Option* tessellation_option =
+        app.add_option("--tessellation", tessellation,
+                       "Write a PLY mesh of the result with normals and distances to INPUT")
+            ->type_name("FILE")
+            ->group(output);
+    app.add_option("--json", command.json, "Write a report; - for standard output")
+        ->type_name("FILE")
+        ->group(output);
+
+    const std::string run = "Run";
+    app.add_option("--threads", command.threads, "Threads to use (default: all cores)")
+        ->type_name("N")
+        ->check(CLI::PositiveNumber)
+        ->group(run);
+    CLI::Option* quiet =
+        app.add_flag("--quiet", command.quiet, "Say nothing but warnings and errors")->group(run);
+    app.add_flag("--verbose", command.verbose, "Say more: rounds of the fit, time of each stage")
+        ->excludes(quiet)
+        ->group(run);
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& success) {
+        return app.exit(success);
+    } catch (const CLI::ParseError& error) {
+        std::fprintf(stderr, "bot2nurbs: %s\nRun bot2nurbs --help for the options.\n",
+                     error.what());
+        return exit_code(ErrorCode::bad_option);
+    }
+    o.repair = !no_repair;
+    if (*patches_option)
+        o.patches = patches;
+    if (*knots_option)
+        o.knots = knots;
+    if (*domain_in_option)
+        o.domain_in = domain_in;
+    if (*domain_out_option)
+        o.domain_out = domain_out;
+    if (*tessellation_option)
+        o.tessellation = tessellation;
+
+    if (*check || *validate) {
+        command.action = *check ? Action::check : Action::validate_domain;
+        const char* name = *check ? "--check" : "--validate-domain";
+        if (*check && *validate) {
+            std::fprintf(stderr, "bot2nurbs: --check and --validate-domain exclude each other\n");
+            return exit_code(ErrorCode::bad_option);
+        }
+        if (!o.outputs.empty() || o.domain_out || o.tessellation) {
+            std::fprintf(stderr, "bot2nurbs: %s writes no output file\n", name);
+            return exit_code(ErrorCode::bad_option);
+        }
+    }
+    return command;
+}
+
+} // namespace bot2nurbs::cli
