@@ -119,8 +119,7 @@ PatchComplex::border(const std::vector<Index>& faces) const
 }
 
 bool PatchComplex::replace(const std::vector<Index>& old_faces, const std::vector<Side>& border,
-                           const std::vector<std::pair<Index, Index>>& chords, Index center,
-                           std::vector<Index>* new_faces)
+                           const std::vector<std::pair<Index, Index>>& chords, Index center)
 {
     std::optional<std::vector<SurfacePath>> drawn;
     if (chords.empty())
@@ -133,18 +132,21 @@ bool PatchComplex::replace(const std::vector<Index>& old_faces, const std::vecto
     const auto inside = [&old_faces](Index f) {
         return std::find(old_faces.begin(), old_faces.end(), f) != old_faces.end();
     };
+    last_.removed_faces.clear();
+    last_.removed_paths.clear();
+    last_.first_new_face = static_cast<Index>(faces_.size());
+    last_.first_new_path = static_cast<Index>(paths_.size());
     for (const Index f : old_faces)
         for (const Side& s : faces_[f].sides)
-            if (inside(paths_[s.path].left) && inside(paths_[s.path].right)) {
+            if (!s.reversed && inside(paths_[s.path].left) && inside(paths_[s.path].right)) {
                 paths_[s.path].alive = false;
-                paths_[s.path].geometry.nodes = {};
+                last_.removed_paths.push_back(s.path);
             }
     for (const Index f : old_faces) {
+        last_.removed_faces.emplace_back(f, std::move(faces_[f].sides));
         faces_[f].sides.clear();
         --alive_faces_;
     }
-    if (new_faces)
-        new_faces->clear();
 
     // Each new face is traced once: from a border side, turning left at each corner.
     const Index n = static_cast<Index>(border.size());
@@ -210,11 +212,24 @@ bool PatchComplex::replace(const std::vector<Index>& old_faces, const std::vecto
                 at = (at + 1) % n;
             }
         }
-        const Index f = add_face(std::move(sides));
-        if (new_faces)
-            new_faces->push_back(f);
+        add_face(std::move(sides));
     }
     return true;
+}
+
+void PatchComplex::undo()
+{
+    alive_faces_ -= new_face_count();
+    faces_.resize(last_.first_new_face);
+    paths_.resize(last_.first_new_path);
+    for (const Index p : last_.removed_paths)
+        paths_[p].alive = true;
+    for (auto& [f, sides] : last_.removed_faces) {
+        for (const Side& s : sides)
+            (s.reversed ? paths_[s.path].right : paths_[s.path].left) = f;
+        faces_[f].sides = std::move(sides);
+        ++alive_faces_;
+    }
 }
 
 void PatchComplex::compact()

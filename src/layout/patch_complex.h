@@ -66,11 +66,17 @@ public:
 
     //! Replaces a set of faces that form a disk. `border` lists the disk's outer sides
     //! counter-clockwise, `inner` the paths inside that go, `chords` the new paths as in retile().
-    //! `new_faces` receives the faces in which the disk is divided afterwards.
+    //! The new faces are the last ones of faces().
     //! \return false when the disk cannot be mapped; nothing is changed then.
     bool replace(const std::vector<Index>& old_faces, const std::vector<Side>& border,
-                 const std::vector<std::pair<Index, Index>>& chords, Index center = invalid_index,
-                 std::vector<Index>* new_faces = nullptr);
+                 const std::vector<std::pair<Index, Index>>& chords, Index center = invalid_index);
+    //! Number of faces the last replace() made.
+    Index new_face_count() const
+    {
+        return static_cast<Index>(faces_.size()) - last_.first_new_face;
+    }
+    //! Takes the last replace() back. At most once after each.
+    void undo();
 
     //! The border of a set of faces, counter-clockwise, when they form a disk with distinct
     //! corners.
@@ -83,12 +89,20 @@ public:
     void compact();
 
 private:
+    //! What the last replace() did.
+    struct Change {
+        std::vector<std::pair<Index, std::vector<Side>>> removed_faces;
+        std::vector<Index> removed_paths;
+        Index first_new_face = 0, first_new_path = 0;
+    };
+
     std::vector<PathSide> geometry(const std::vector<Side>& sides) const;
 
     OverlayBuilder builder_;
     std::vector<Face> faces_;
     std::vector<Path> paths_;
     Index alive_faces_ = 0;
+    Change last_;
 };
 
 } // namespace bot2nurbs

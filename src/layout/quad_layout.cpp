@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: MIT
+#include "layout/quad_layout.h"
+
+#include "layout/pairing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace bot2nurbs {
+
+namespace {
+
+using Side = PatchComplex::Side;
+
+// What one unit of (valence - 4)^2 costs against one unit of harmonic energy (a square patch has
+// 1).
+constexpr double valence_weight = 0.35;
+// Total cost is lowered among pairings whose worst distortion is within this factor of the optimum.
+constexpr double bottleneck_slack = 1.3;
+// A change must lower the energy by this much, so that rounding does not make it cycle.
+constexpr double min_gain = 1e-3;
+constexpr int max_passes = 6;
+// Largest valence a change may make: the masks grow fast beyond (facts on the masks' norms).
+constexpr int max_valence = 6;
+
+double valence_cost(int valence)
+{
+    const double d = static_cast<double>(valence) - 4.0;
+    return valence_weight * d * d;
+}
+
+// The state of K while it is improved: distortion per face and valence per mesh vertex.
+class Improver {
+public:
+    Improver(PatchComplex& complex, Index min_quads, Context& context)
+        : complex_(complex), min_quads_(min_quads), context_(context)
+    {
+        valence_.assign(complex.mesh().vertex_count(), 0);
+        for (const auto& p : complex.paths())
+            if (p.alive)
+                ++valence_[p.geometry.a], ++valence_[p.geometry.b];
+    }
+
+    QuadImprovement run()
+    {
+        for (int pass = 0; pass < max_passes && !context_.cancelled(); ++pass) {
+            const QuadImprovement before = done_;
+            remove_doublets();
+            collapse_quads();
+            rotate_edges();
+            remove_doublets();
+            relocate_vertices();
+            straighten_edges();
+            if (before.rotations == done_.rotations && before.collapses == done_.collapses &&
+                before.doublets == done_.doublets && pass > 0)
+                break;
+        }
+        return done_;
+    }
+
+private:
+    double distortion(Index f)
+    {
+        if (distortion_.size() <= f)
+            distortion_.resize(f + 1, -1.0);
+        if (distortion_[f] < 0.0)
+            distortion_[f] = face_distortion(complex_, complex_.faces()[f].sides);
+        return distortion_[f];
+    }
+
+    bool adjacent(Index a, const Side& at_a, Index b) const
+    {
+        (void)a;
+        for (const Side& s : complex_.star(at_a))
+            if (complex_.end(s) == b)
+                return true;
+        return false;
+    }
+
+    // Replaces and keeps the change when it lowers the energy; `valence_change` is that of the
+    // valence terms, already counted by the caller.
+    bool attempt(const std::vector<Index>& faces, const std::vector<Side>& border,
+                 const std::vector<std::pair<Index, Index>>& chords, double valence_change,
+                 Index center = invalid_index)
+    {
+        double before = 0.0, worst = 0.0;
+        for (const Index f : faces) {
+            before += distortion(f);
+            worst = std::max(worst, distortion(f));
+        }
+        // Distortion is at least one for each new quad.
+        const double new_faces =
+            static_cast<double>(chords.size()) + (center == invalid_index ? 1.0 : 0.0);
+        const double extra = before - static_cast<double>(faces.size());
+        if (valence_change >= extra - min_gain)
+            return false;
+        if (!complex_.replace(faces, border, chords, center))
+            return false;
+        const Index first = static_cast<Index>(complex_.faces().size()) - complex_.new_face_count();
+        distortion_.resize(complex_.faces().size(), -1.0);
+        double after = 0.0, worst_after = 0.0;
+        for (Index f = first; f < complex_.faces().size(); ++f) {
+            distortion_[f] = -1.0;
+            after += distortion(f);
+            worst_after = std::max(worst_after, distortion(f));
+            if (after - new_faces + valence_change >= extra - min_gain)
+                break;
+        }
+        if (after - new_faces + valence_change < extra - min_gain)
+            return true;
+        complex_.undo();
+        distortion_.resize(first);
+        return false;
+    }
+
+    void remove_doublets();
+    void rotate_edges();
+    void collapse_quads();
+    void relocate_vertices();
+    void straighten_edges();
+    bool try_collapse(const Side& at_v);
+
+    // One side that starts at each vertex of K, by vertex.
+    std::vector<Side> vertex_sides() const
+    {
+        std::vector<Side> at(valence_.size());
+        for (Index p = 0; p < complex_.paths().size(); ++p)
+            if (complex_.paths()[p].alive) {
+                const SurfacePath& g = complex_.paths()[p].geometry;
+                if (at[g.a].path == invalid_index)
+                    at[g.a] = {p, false};
+                if (at[g.b].path == invalid_index)
+                    at[g.b] = {p, true};
+            }
+        std::vector<Side> result;
+        for (const Side& s : at)
+            if (s.path != invalid_index)
+                result.push_back(s);
+        return result;
+    }
+    bool alive(const Side& s) const { return complex_.paths()[s.path].alive; }
+
+    PatchComplex& complex_;
+    Index min_quads_;
+    Context& context_;
+    std::vector<int> valence_;       // Per mesh vertex.
+    std::vector<double> distortion_; // Per face; negative: not known.
+    QuadImprovement done_;
+};
+
+void Improver::remove_doublets()
+{
+    bool changed = true;
+    while (changed) {
+        changed = false;
+        for (const Side& s : vertex_sides()) {
+            const Index v = complex_.start(s);
+            if (valence_[v] != 2 || !alive(s) || complex_.face_count() <= 3)
+                continue;
+            const std::vector<Index> faces{complex_.face_at(s),
+                                           complex_.face_at({s.path, !s.reversed})};
+            const auto border = complex_.border(faces);
+            if (!border || border->size() != 4)
+                continue;
+            const Index a = complex_.end(s), b = complex_.start(complex_.previous(s));
+            if (!complex_.replace(faces, *border, {}))
+                continue;
+            distortion_.resize(complex_.faces().size(), -1.0);
+            distortion_.back() = -1.0;
+            valence_[v] = 0;
+            --valence_[a], --valence_[b];
+            ++done_.doublets;
+            changed = true;
+        }
+    }
+}
+
+void Improver::rotate_edges()
+{
+    const Index count = static_cast<Index>(complex_.paths().size());
+    for (Index p = 0; p < count && !context_.cancelled(); ++p) {
+        if (!complex_.paths()[p].alive)
+            continue;
+        const Side s{p, false};
+        const Index a = complex_.start(s), b = complex_.end(s);
+        // Degree two is allowed on the way: the doublet is removed next.
+        if (valence_[a] < 3 || valence_[b] < 3)
+            continue;
+        const std::vector<Index> faces{complex_.face_at(s), complex_.face_at({p, true})};
+        const auto border = complex_.border(faces);
+        if (!border || border->size() != 6)
+            continue;
+        Index ia = 0;
+        while (complex_.start((*border)[ia]) != a)
+            ++ia;
+        for (Index turn = 1; turn <= 2; ++turn) {
+            const Index ic = (ia + turn) % 6, id = (ia + turn + 3) % 6;
+            const Index c = complex_.start((*border)[ic]), d = complex_.start((*border)[id]);
+            if (valence_[c] + 1 > max_valence || valence_[d] + 1 > max_valence ||
+                adjacent(c, (*border)[ic], d))
+                continue;
+            // A doublet costs as much as a valence of three: it disappears with its quad.
+            const double change = valence_cost(valence_[a] - 1) - valence_cost(valence_[a]) +
+                                  valence_cost(valence_[b] - 1) - valence_cost(valence_[b]) +
+                                  valence_cost(valence_[c] + 1) - valence_cost(valence_[c]) +
+                                  valence_cost(valence_[d] + 1) - valence_cost(valence_[d]);
+            if (attempt(faces, *border, {{ic, id}}, change)) {
+                --valence_[a], --valence_[b], ++valence_[c], ++valence_[d];
+                ++done_.rotations;
+                break;
+            }
+        }
+    }
+}
+
+bool Improver::try_collapse(const Side& at_v)
+{
+    // The quad to the left of at_v: v, e0, w, e1. v goes; its other edges move to w.
+    const Index v = complex_.start(at_v);
+    const std::vector<Side> star = complex_.star(at_v);
+    const Index n = static_cast<Index>(star.size());
+    const Index w = complex_.end(complex_.next(at_v));
+    const Index e0 = complex_.end(at_v), e1 = complex_.end(star[1]);
+    if (n < 3 || valence_[e0] < 4 || valence_[e1] < 4 ||
+        valence_[w] + static_cast<int>(n) - 2 > max_valence || w == v)
+        return false;
+    std::vector<Index> faces;
+    for (const Side& s : star)
+        faces.push_back(complex_.face_at(s));
+    const auto border = complex_.border(faces);
+    if (!border || border->size() != 2 * n)
+        return false;
+    Index iw = 0;
+    while (iw < 2 * n && complex_.start((*border)[iw]) != w)
+        ++iw;
+    if (iw == 2 * n)
+        return false;
+    std::vector<std::pair<Index, Index>> chords;
+    for (Index k = 3; k + 2 < 2 * n; k += 2) {
+        const Index i = (iw + k) % (2 * n);
+        if (adjacent(w, (*border)[iw], complex_.start((*border)[i])))
+            return false;
+        chords.emplace_back(iw, i);
+    }
+    const double change =
+        -valence_cost(valence_[v]) + valence_cost(valence_[e0] - 1) - valence_cost(valence_[e0]) +
+        valence_cost(valence_[e1] - 1) - valence_cost(valence_[e1]) +
+        valence_cost(valence_[w] + static_cast<int>(n) - 2) - valence_cost(valence_[w]);
+    if (!attempt(faces, *border, chords, change))
+        return false;
+    valence_[v] = 0;
+    --valence_[e0], --valence_[e1];
+    valence_[w] += static_cast<int>(n) - 2;
+    ++done_.collapses;
+    return true;
+}
+
+void Improver::collapse_quads()
+{
+    const Index count = static_cast<Index>(complex_.faces().size());
+    for (Index f = 0; f < count && !context_.cancelled(); ++f) {
+        if (complex_.face_count() <= min_quads_)
+            return;
+        if (!complex_.faces()[f].alive())
+            continue;
+        const std::vector<Side> sides = complex_.faces()[f].sides;
+        for (const Side& s : sides)
+            if (try_collapse(s))
+                break;
+    }
+}
+
+void Improver::relocate_vertices()
+{
+    for (const Side& found : vertex_sides()) {
+        if (context_.cancelled())
+            return;
+        if (!alive(found))
+            continue;
+        const std::vector<Side> star = complex_.star(found);
+        const Index n = static_cast<Index>(star.size());
+        std::vector<Index> faces;
+        for (const Side& s : star)
+            faces.push_back(complex_.face_at(s));
+        const auto border = complex_.border(faces);
+        if (!border || border->size() != 2 * n)
+            continue;
+        // The mesh vertex nearest to the middle of the star's map.
+        const auto overlay = complex_.overlay(*border);
+        if (!overlay)
+            continue;
+        const auto map = map_to_polygon(complex_.mesh(), *overlay, regular_polygon(2 * n));
+        if (!map)
+            continue;
+        Index center = invalid_index;
+        double nearest = std::numeric_limits<double>::infinity();
+        for (Index i = overlay->boundary_count; i < overlay->vertices.size(); ++i)
+            if (overlay->vertices[i].mesh_vertex != invalid_index && norm(map->uv[i]) < nearest) {
+                nearest = norm(map->uv[i]);
+                center = overlay->vertices[i].mesh_vertex;
+            }
+        if (center == invalid_index)
+            continue;
+        std::vector<std::pair<Index, Index>> chords;
+        for (Index i = 0; i < 2 * n; ++i) {
+            const Index c = complex_.start((*border)[i]);
+            for (const Side& s : star)
+                if (complex_.end(s) == c)
+                    chords.emplace_back(i, invalid_index);
+        }
+        if (chords.size() != n)
+            continue;
+        const Index v = complex_.start(found);
+        if (attempt(faces, *border, chords, 0.0, center)) {
+            std::swap(valence_[v], valence_[center]);
+            if (v == center)
+                valence_[v] = static_cast<int>(n);
+            ++done_.relocations;
+        }
+    }
+}
+
+void Improver::straighten_edges()
+{
+    const Index count = static_cast<Index>(complex_.paths().size());
+    for (Index p = 0; p < count && !context_.cancelled(); ++p) {
+        if (!complex_.paths()[p].alive)
+            continue;
+        const std::vector<Index> faces{complex_.paths()[p].left, complex_.paths()[p].right};
+        const auto border = complex_.border(faces);
+        if (!border || border->size() != 6)
+            continue;
+        Index ia = 0;
+        while (complex_.start((*border)[ia]) != complex_.paths()[p].geometry.a)
+            ++ia;
+        attempt(faces, *border, {{ia, (ia + 3) % 6}}, 0.0);
+    }
+}
+
+} // namespace
+
+double face_distortion(PatchComplex& complex, const std::vector<Side>& border)
+{
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const auto overlay = complex.overlay(border);
+    if (!overlay)
+        return infinity;
+    const auto map = map_to_polygon(complex.mesh(), *overlay, unit_square());
+    return map ? measure_distortion(*overlay, map->uv).dirichlet : infinity;
+}
+
+Status pair_triangles(PatchComplex& complex, Context& context)
+{
+    std::vector<PairCandidate> candidates;
+    std::vector<Index> path_of;
+    std::vector<int> valence(complex.mesh().vertex_count(), 0);
+    for (const auto& p : complex.paths())
+        if (p.alive)
+            ++valence[p.geometry.a], ++valence[p.geometry.b];
+    for (Index p = 0; p < complex.paths().size(); ++p) {
+        if (context.cancelled())
+            return Context::cancelled_error("pairing");
+        const PatchComplex::Path& path = complex.paths()[p];
+        const auto border = complex.border({path.left, path.right});
+        if (!border || border->size() != 4)
+            continue;
+        PairCandidate c;
+        c.face_a = path.left;
+        c.face_b = path.right;
+        c.distortion = face_distortion(complex, *border);
+        if (!std::isfinite(c.distortion))
+            continue;
+        // A triangle vertex of valence six that loses two edges has four; what joining across an
+        // edge does to a vertex is counted from there.
+        const double a = static_cast<double>(valence[path.geometry.a]) - 6.0;
+        const double b = static_cast<double>(valence[path.geometry.b]) - 6.0;
+        c.cost = c.distortion - valence_weight * (a + b);
+        candidates.push_back(c);
+        path_of.push_back(p);
+    }
+    const auto chosen =
+        match_faces(static_cast<Index>(complex.faces().size()), candidates, bottleneck_slack);
+    if (!chosen)
+        return Error{ErrorCode::layout_failed,
+                     "the triangles of the base complex cannot be paired completely",
+                     invalid_index};
+    for (const Index c : *chosen) {
+        const PatchComplex::Path& path = complex.paths()[path_of[c]];
+        const std::vector<Index> faces{path.left, path.right};
+        if (!complex.replace(faces, *complex.border(faces), {}))
+            return Error{ErrorCode::internal, "a pair of faces could not be joined", path_of[c]};
+    }
+    complex.compact();
+    return {};
+}
+
+QuadImprovement improve_quads(PatchComplex& complex, Index min_quads, Context& context)
+{
+    const QuadImprovement done = Improver(complex, min_quads, context).run();
+    complex.compact();
+    return done;
+}
+
+} // namespace bot2nurbs
