@@ -42,6 +42,9 @@ void check_topology(const Brep& brep, DefectList& defects, BrepReport& report);
 void check_geometry(const Brep& brep, DefectList& defects, DefectList& warnings,
                     BrepReport& report);
 
+//! The vertex where a trim starts, by its edge.
+Index start_vertex(const Brep& brep, const BrepTrim& trim);
+
 //! Per trim: the trim that follows it in its loop. \pre check_lists found nothing
 std::vector<Index> next_trims(const Brep& brep);
 

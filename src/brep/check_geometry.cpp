@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace bot2nurbs {
 
@@ -50,6 +51,14 @@ TrimIso iso_of(Side side)
 bool inside(const Vec2& p, double low, double high)
 {
     return p.x >= low && p.x <= high && p.y >= low && p.y <= high;
+}
+
+//! A length as people read it, whatever its size.
+std::string to_text(double length)
+{
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.3g", length);
+    return text.data();
 }
 
 //! Length of the control polygon: zero only when the curve is a point.
@@ -108,8 +117,7 @@ private:
         }
         const double limit = length_share * diagonal_;
         if (polygon_length(curve.control) <= limit) {
-            defects_.add("zero_length_edge", e,
-                         "edge " + std::to_string(e) + " is shorter than " + std::to_string(limit));
+            defects_.add("zero_length_edge", e, "edge " + std::to_string(e) + " has no length");
             merged_vertex_[edge.vertex[0]] = merged_vertex_[edge.vertex[1]] = 1;
             bad_edge_[e] = 1;
         } else if (norm(curve.control.back() - curve.control.front()) <= limit) {
@@ -170,7 +178,8 @@ private:
                 continue;
             }
             const BrepTrim &a = brep_.trims[t], &b = brep_.trims[n];
-            if (a.vertex[1] != b.vertex[0] || !(end(a, 1) == end(b, 0)))
+            const Index last = brep_.edges[a.edge].vertex[a.reversed ? 0 : 1];
+            if (last != start_vertex(brep_, b) || !(end(a, 1) == end(b, 0)))
                 chained = false;
             area += 0.5 * cross(end(a, 0), end(a, 1));
         }
@@ -204,7 +213,7 @@ private:
         for (Index v = 0; v < off.size(); ++v) {
             if (off[v] > coincidence_share * diagonal_) {
                 defects_.add("vertex_off_edge", v,
-                             "an edge ends " + std::to_string(off[v]) + " away from its vertex " +
+                             "an edge ends " + to_text(off[v]) + " away from its vertex " +
                                  std::to_string(v));
             }
         }
@@ -221,7 +230,7 @@ private:
         report_.max_edge_gap = std::max(report_.max_edge_gap, gap);
         if (gap > coincidence_share * diagonal_) {
             defects_.add("edge_off_surface", t,
-                         "edge " + std::to_string(trim.edge) + " is " + std::to_string(gap) +
+                         "edge " + std::to_string(trim.edge) + " is " + to_text(gap) +
                              " away from the side of face " +
                              std::to_string(brep_.loops[trim.loop].face));
         }
@@ -301,7 +310,7 @@ private:
         if (longest > aspect_limit * shortest) {
             warnings_.add("face_aspect_ratio", f,
                           "the box of face " + std::to_string(f) + " is " +
-                              std::to_string(longest / shortest) + " times as long as thin");
+                              to_text(longest / shortest) + " times as long as thin");
         }
     }
 

@@ -90,7 +90,7 @@ void check_fans(const Brep& brep, DefectList& defects)
     }
     std::vector<Index> fan(brep.vertices.size(), invalid_index);
     for (Index t = 0; t < brep.trims.size(); ++t) {
-        const Index v = brep.trims[t].vertex[0], root = corners.find(t);
+        const Index v = start_vertex(brep, brep.trims[t]), root = corners.find(t);
         if (fan[v] == invalid_index) {
             fan[v] = root;
         } else if (fan[v] != root && !nonmanifold[v]) {
@@ -103,6 +103,11 @@ void check_fans(const Brep& brep, DefectList& defects)
 }
 
 } // namespace
+
+Index start_vertex(const Brep& brep, const BrepTrim& trim)
+{
+    return brep.edges[trim.edge].vertex[trim.reversed ? 1 : 0];
+}
 
 std::vector<Index> next_trims(const Brep& brep)
 {
