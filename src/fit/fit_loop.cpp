@@ -84,7 +84,8 @@ std::vector<double> quad_areas(const SplineSurface& surface)
 
 FitLoop::FitLoop(const SplineNetwork& network, const ReducedNetwork& reduced,
                  const FitOptions& options, Context& context)
-    : network_(network), reduced_(reduced), options_(options), context_(context), system_(reduced)
+    : network_(network), reduced_(reduced), options_(options), context_(context), system_(reduced),
+      guard_(0, {}, {})
 {
     // Each of the 27 multiplications of a 3 x 3 block product, half of them by symmetry.
     coupled_affordable_ = 0.5 * 27.0 * system_.factor_work() <= coupled_work_limit;
@@ -107,13 +108,12 @@ void FitLoop::set_quad_share(const SplineSurface* surface)
         quad_share_[q] = std::max(area[q] / sum, least_share / quads) / 16.0;
 }
 
-void FitLoop::set_fairness(int round)
+void FitLoop::set_fairness(double fairness)
 {
-    const double start = options_.fairness * std::pow(fairness_decay, round);
-    round_fairness_ = std::max(start, options_.fairness_floor);
+    round_fairness_ = fairness;
     fairness_.resize(quad_share_.size());
     for (std::size_t q = 0; q < fairness_.size(); ++q)
-        fairness_[q] = std::max(start, floor_[q]) * quad_share_[q];
+        fairness_[q] = std::max(fairness, floor_[q]) * quad_share_[q];
 }
 
 std::vector<FitRow> FitLoop::rows_at(const State& state) const
@@ -174,6 +174,7 @@ FitLoop::State FitLoop::moved(const State& state, const std::vector<Vec3>& move)
         next.unknowns[i] += move[i];
     next.surface = SplineSurface(network_, reduced_.expand(next.unknowns));
     next.quad_energy = quad_energies(next.surface);
+    next.folds = guard_.folds(next.surface, context_);
     if (!context_.cancelled())
         next.feet = correct_parameters(network_.complex, next.surface, points, where, context_);
     return next;
@@ -194,7 +195,7 @@ NormalSystem::Solution FitLoop::solve(const State& state, const std::vector<FitR
         solution = solve_stacked_rows(reduced_, problem, context_);
         summary.used_fallback = summary.used_fallback || solution.ok;
     }
-    if (solution.ok)
+    if (solution.ok && solution.condition > 0.0)
         summary.condition = solution.condition;
     return solution;
 }
@@ -214,37 +215,47 @@ Status FitLoop::first_round(State& state)
     return std::nullopt;
 }
 
-Status FitLoop::next_round(int round, State& state, double& mu)
+Status FitLoop::next_round(State& state, double& mu, bool& stuck)
 {
-    set_fairness(round);
+    const double last_fairness = round_fairness_;
+    set_fairness(std::max(round_floor_, fairness_decay * last_fairness));
     const std::vector<double> factors = robust_factors(state);
     std::vector<FitRow> rows = rows_at(state);
     for (std::size_t i = 0; i < rows.size(); ++i)
         rows[i].weight *= factors[i];
-    const double before = objective(state, factors);
     for (;;) {
+        const double before = objective(state, factors);
         const NormalSystem::Solution solution = solve(state, rows, mu);
         if (context_.cancelled())
             return Context::cancelled_error("fit");
+        bool folded = false;
         if (solution.ok) {
             State next = moved(state, solution.move);
             if (context_.cancelled())
                 return Context::cancelled_error("fit");
-            if (objective(next, factors) <= before * (1.0 + rounding)) {
+            folded = next.folds > state.folds;
+            if (!folded && objective(next, factors) <= before * (1.0 + rounding)) {
                 state = std::move(next);
                 return std::nullopt;
             }
         } else if (mu >= 1.0) {
             return Error{ErrorCode::fit_failed,
-                         "the least-squares system of round " + std::to_string(round + 1) +
-                             " could not be solved",
+                         "the least-squares system of round " +
+                             std::to_string(summary.rounds.size() + 1) + " could not be solved",
                          invalid_index};
         }
-        // With mu = 1 a solve lowers the objective whatever the feet do, so what is left there is
-        // rounding: the state stays and the rounds stall.
-        if (mu >= 1.0)
+        if (folded && round_fairness_ < last_fairness) {
+            // Less fairness than before is what folds a surface; hold it from here on.
+            set_fairness(last_fairness);
+            round_floor_ = last_fairness;
+        } else if (mu < 1.0) {
+            mu = std::min(1.0, mu / mu_factor);
+        } else {
+            // Point-distance rows lower the objective whatever the feet do, so only rounding or
+            // folds are left.
+            stuck = true;
             return std::nullopt;
-        mu = std::min(1.0, mu / mu_factor);
+        }
     }
 }
 
@@ -286,10 +297,15 @@ Status FitLoop::run()
     double start = now();
     State state;
     set_quad_share(nullptr);
-    set_fairness(0);
+    set_fairness(options_.fairness);
+    round_floor_ = options_.fairness_floor;
+    guard_ = FoldGuard(network_.complex.quad_count(), normals, where);
     if (const auto error = first_round(state))
         return error;
     set_quad_share(&state.surface);
+    if (!guard_.ready())
+        guard_.set_reference(state.surface);
+    state.folds = guard_.folds(state.surface, context_);
     record(state, 1.0, start);
 
     const bool tangent = options_.rows == DistanceRows::tangent && coupled_affordable_;
@@ -298,14 +314,14 @@ Status FitLoop::run()
     for (int round = 1; round < options_.max_rounds; ++round) {
         start = now();
         const double before = summary.rounds.back().rms;
-        if (const auto error = next_round(round, state, mu))
+        bool stuck = false;
+        if (const auto error = next_round(state, mu, stuck))
             return error;
         record(state, mu, start);
-        const bool schedule_done =
-            (!tangent || mu <= mu_floor) && round_fairness_ <= options_.fairness_floor;
+        const bool schedule_done = (!tangent || mu <= mu_floor) && round_fairness_ <= round_floor_;
         const double after = summary.rounds.back().rms;
-        if (round + 1 >= least_rounds && schedule_done &&
-            after >= (1.0 - options_.stall) * before) {
+        if (stuck || (round + 1 >= least_rounds && schedule_done &&
+                      after >= (1.0 - options_.stall) * before)) {
             summary.termination = "stalled";
             break;
         }

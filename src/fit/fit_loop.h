@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bot2nurbs/fit_network.h"
+#include "fit/fold_guard.h"
 #include "fit/foot_point.h"
 #include "fit/normal_system.h"
 
@@ -18,6 +19,7 @@ public:
     // In.
     std::vector<Vec3> points;
     std::vector<double> weights;
+    std::vector<Vec3> normals; //!< Unit normals of the source; may be empty.
     // In and out.
     std::vector<DomainPoint> where;
     // Out.
@@ -34,10 +36,12 @@ private:
         SplineSurface surface;
         std::vector<FootPoint> feet;
         std::vector<double> quad_energy; //!< Thin-plate energy, unweighted.
+        Index folds = 0;
     };
 
     Status first_round(State& state);
-    Status next_round(int round, State& state, double& mu);
+    //! \return true in `stuck` when no step lowers the objective without new folds.
+    Status next_round(State& state, double& mu, bool& stuck);
     //! Solves from `state` with the given rows. Falls back to QR where that is the answer.
     NormalSystem::Solution solve(const State& state, const std::vector<FitRow>& rows, double mu);
     //! The state after moving the unknowns; no feet when cancelled.
@@ -47,7 +51,7 @@ private:
     std::vector<double> robust_factors(const State& state) const;
     double objective(const State& state, const std::vector<double>& factors) const;
     void set_quad_share(const SplineSurface* surface);
-    void set_fairness(int round);
+    void set_fairness(double fairness);
     void record(const State& state, double mu, double start);
 
     const SplineNetwork& network_;
@@ -59,6 +63,8 @@ private:
     std::vector<double> floor_;      //!< Per quad: least fairness.
     std::vector<double> fairness_;   //!< Per quad: this round's factor of its energy.
     double round_fairness_ = 0.0;
+    double round_floor_ = 0.0; //!< Rises above the option when lower fairness folded the surface.
+    FoldGuard guard_;
     bool coupled_affordable_ = true;
 };
 

@@ -18,9 +18,10 @@ Status check_samples(const SplineNetwork& network, const SurfaceSampleSet& sampl
     const std::size_t n = samples.size();
     if (n == 0 || network.unknown_count == 0)
         return Error{ErrorCode::empty_input, "there is nothing to fit", invalid_index};
-    if (samples.weights.size() != n || samples.domain.size() != n)
-        return Error{ErrorCode::bad_geometry, "samples without weights or domain parameters",
-                     invalid_index};
+    if (samples.weights.size() != n || samples.domain.size() != n ||
+        (!samples.normals.empty() && samples.normals.size() != n))
+        return Error{ErrorCode::bad_geometry,
+                     "samples without a weight, a normal or parameters each", invalid_index};
     for (std::size_t i = 0; i < n; ++i) {
         const DomainPoint& d = samples.domain[i];
         if (!is_finite(samples.positions[i]) || !(samples.weights[i] > 0.0) ||
@@ -84,6 +85,7 @@ Result<FitResult> fit_network(const SplineNetwork& network, SurfaceSampleSet& sa
         loop.weights[i] = samples.weights[i] / weight_sum;
     }
     loop.where = samples.domain;
+    loop.normals = samples.normals;
     if (const auto error = loop.run())
         return *error;
 

@@ -16,6 +16,11 @@ namespace {
 //! Pieces assembled in parallel before their blocks are added to the matrix in piece order.
 constexpr Index batch_pieces = 512;
 constexpr Index chunk_pieces = 16;
+//! Conjugate gradients with the factor of an earlier round: at most this many iterations, which
+//! cost about as much as half a factorisation, down to this share of the preconditioned residual:
+//! far below what moving feet change about a round.
+constexpr int reuse_iterations = 30;
+constexpr double reuse_tolerance = 1e-4;
 //! Coefficient pairs (i <= j) of a piece.
 constexpr int pairs16 = 136;
 
@@ -276,8 +281,10 @@ NormalSystem::Solution NormalSystem::solve_decoupled(double condition_limit, con
     if (!scalar_.factorize() || context.cancelled())
         return solution;
     solution.condition = scalar_.condition();
-    if (!(solution.condition <= condition_limit))
+    if (!(solution.condition <= condition_limit)) {
+        scalar_.drop_factor();
         return solution;
+    }
     solution.move.resize(place_.size());
     for (int c = 0; c < 3; ++c) {
         Eigen::VectorXd right(n);
@@ -289,6 +296,17 @@ NormalSystem::Solution NormalSystem::solve_decoupled(double condition_limit, con
     }
     solution.ok = true;
     return solution;
+}
+
+Eigen::VectorXd NormalSystem::solve_by_scalar(const Eigen::VectorXd& right) const
+{
+    const auto n = static_cast<Eigen::Index>(place_.size());
+    Eigen::VectorXd x(3 * n);
+    using Strided = Eigen::Map<Eigen::VectorXd, 0, Eigen::InnerStride<3>>;
+    using ConstStrided = Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<3>>;
+    for (int c = 0; c < 3; ++c)
+        Strided(x.data() + c, n) = scalar_.solve(ConstStrided(right.data() + c, n));
+    return x;
 }
 
 NormalSystem::Solution NormalSystem::solve_coupled(double condition_limit, const Context& context)
@@ -317,17 +335,38 @@ NormalSystem::Solution NormalSystem::solve_coupled(double condition_limit, const
             for (int e = column_[j]; e < column_[j + 1]; ++e)
                 for (int a = 0; a <= (row_[e] == j ? b : 2); ++a)
                     *value++ = value_[6 * static_cast<std::size_t>(e) + block_of[a][b]];
+    const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(right_.data(), 3 * n);
+    const auto cancelled = [&] { return context.cancelled(); };
     Solution solution;
-    if (!coupled_.factorize() || context.cancelled())
+    std::optional<Eigen::VectorXd> x;
+    if (coupled_.has_factor()) {
+        // Rounds differ little: a factor of an earlier one still preconditions well, and a few
+        // iterations cost much less than a factorisation.
+        x = conjugate_gradients(
+            matrix, right, reuse_iterations, reuse_tolerance,
+            [&](const Eigen::VectorXd& r) { return coupled_.solve(r); }, cancelled);
+        solution.condition = coupled_condition_;
+    } else if (scalar_.has_factor()) {
+        x = conjugate_gradients(
+            matrix, right, reuse_iterations, reuse_tolerance,
+            [&](const Eigen::VectorXd& r) { return solve_by_scalar(r); }, cancelled);
+        solution.condition = 0.0;
+    }
+    if (!x && !context.cancelled()) {
+        if (!coupled_.factorize() || context.cancelled())
+            return solution;
+        solution.condition = coupled_condition_ = coupled_.condition();
+        if (!(solution.condition <= condition_limit)) {
+            coupled_.drop_factor();
+            return solution;
+        }
+        x = coupled_.solve(right);
+    }
+    if (!x)
         return solution;
-    solution.condition = coupled_.condition();
-    if (!(solution.condition <= condition_limit))
-        return solution;
-    const Eigen::VectorXd x =
-        coupled_.solve(Eigen::Map<const Eigen::VectorXd>(right_.data(), 3 * n));
     solution.move.resize(place_.size());
     for (std::size_t i = 0; i < place_.size(); ++i)
-        solution.move[i] = {x[3 * place_[i]], x[3 * place_[i] + 1], x[3 * place_[i] + 2]};
+        solution.move[i] = {(*x)[3 * place_[i]], (*x)[3 * place_[i] + 1], (*x)[3 * place_[i] + 2]};
     solution.ok = true;
     return solution;
 }

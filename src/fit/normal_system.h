@@ -57,7 +57,7 @@ public:
     struct Solution {
         bool ok = false;
         std::vector<Vec3> move; //!< Per free unknown.
-        double condition = 0.0;
+        double condition = 0.0; //!< Of the last factorised matrix; 0 when that is not of this kind.
     };
     Solution solve(const RoundProblem& problem, double condition_limit, const Context& context);
 
@@ -65,6 +65,8 @@ private:
     bool assemble(const RoundProblem& problem, bool coupled, const Context& context);
     Solution solve_decoupled(double condition_limit, const Context& context);
     Solution solve_coupled(double condition_limit, const Context& context);
+    //! Solves x, y and z each with the factor of the decoupled matrix.
+    Eigen::VectorXd solve_by_scalar(const Eigen::VectorXd& right) const;
 
     const ReducedNetwork& network_;
     std::vector<int> place_;  //!< Per free unknown: its column in the fill-reducing order.
@@ -77,6 +79,7 @@ private:
     std::size_t factor_entries_ = 0;
     double factor_work_ = 0.0;
     ScaledFactor scalar_, coupled_;
+    double coupled_condition_ = 0.0;
 };
 
 } // namespace bot2nurbs

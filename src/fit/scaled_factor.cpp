@@ -28,6 +28,7 @@ Eigen::VectorXd start_vector(Eigen::Index n)
 
 bool ScaledFactor::factorize()
 {
+    has_factor_ = false;
     const Eigen::Index n = matrix_.cols();
     scale_.resize(n);
     for (Eigen::Index j = 0; j < n; ++j) {
@@ -37,15 +38,19 @@ bool ScaledFactor::factorize()
             return false;
         scale_[j] = 1.0 / std::sqrt(d);
     }
+    if (!analysed_)
+        scaled_ = matrix_;
     for (Eigen::Index j = 0; j < n; ++j)
         for (int e = matrix_.outerIndexPtr()[j]; e < matrix_.outerIndexPtr()[j + 1]; ++e)
-            matrix_.valuePtr()[e] *= scale_[matrix_.innerIndexPtr()[e]] * scale_[j];
+            scaled_.valuePtr()[e] =
+                matrix_.valuePtr()[e] * scale_[matrix_.innerIndexPtr()[e]] * scale_[j];
     if (!analysed_) {
-        factor_.analyzePattern(matrix_);
+        factor_.analyzePattern(scaled_);
         analysed_ = true;
     }
-    factor_.factorize(matrix_);
-    return factor_.info() == Eigen::Success && factor_.vectorD().minCoeff() > 0.0;
+    factor_.factorize(scaled_);
+    has_factor_ = factor_.info() == Eigen::Success && factor_.vectorD().minCoeff() > 0.0;
+    return has_factor_;
 }
 
 Eigen::VectorXd ScaledFactor::solve(const Eigen::VectorXd& right) const
@@ -56,14 +61,14 @@ Eigen::VectorXd ScaledFactor::solve(const Eigen::VectorXd& right) const
 
 double ScaledFactor::condition() const
 {
-    Eigen::VectorXd v = start_vector(matrix_.cols());
+    Eigen::VectorXd v = start_vector(scaled_.cols());
     double largest = 0.0, inverse_largest = 0.0;
     for (int i = 0; i < power_iterations; ++i) {
-        const Eigen::VectorXd w = matrix_.selfadjointView<Eigen::Upper>() * v;
+        const Eigen::VectorXd w = scaled_.selfadjointView<Eigen::Upper>() * v;
         largest = w.norm();
         v = w / largest;
     }
-    v = start_vector(matrix_.cols());
+    v = start_vector(scaled_.cols());
     for (int i = 0; i < power_iterations; ++i) {
         const Eigen::VectorXd w = factor_.solve(v);
         inverse_largest = w.norm();
