@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "layout/size_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bot2nurbs {
+
+namespace {
+
+// Density follows the square root of curvature within these bounds: patches of very different size
+// beside each other cost more in distortion than they save in error.
+constexpr double min_density = 0.7;
+constexpr double max_density = 1.8;
+// More smoothing rounds than this on very dense meshes would cost more than the layout.
+constexpr int max_rounds = 60;
+
+// One round of averaging over neighbours, weighted by area.
+template <class T>
+void smooth(const ManifoldMesh& mesh, const std::vector<double>& area, std::vector<T>& value)
+{
+    std::vector<T> sum(value.size());
+    std::vector<double> weight(value.size(), 0.0);
+    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+        const Index a = mesh.from(h), b = mesh.to(h);
+        sum[a] = sum[a] + area[b] * value[b];
+        weight[a] += area[b];
+    }
+    for (Index v = 0; v < value.size(); ++v)
+        if (weight[v] > 0.0)
+            value[v] = 0.5 * value[v] + (0.5 / weight[v]) * sum[v];
+}
+
+} // namespace
+
+SizeField measure_size_field(const ManifoldMesh& mesh, double smoothing)
+{
+    const Index n = mesh.vertex_count();
+    std::vector<Vec3> normal(n);
+    std::vector<double> area(n, 0.0);
+    double edge_sum = 0.0;
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        const Vec3 a = mesh.area_vector(f);
+        for (int k = 0; k < 3; ++k) {
+            normal[mesh.triangle(f)[k]] += a;
+            area[mesh.triangle(f)[k]] += norm(a) / 6.0;
+            edge_sum += norm_squared(mesh.position(mesh.triangle(f)[k]) -
+                                     mesh.position(mesh.triangle(f)[(k + 1) % 3]));
+        }
+    }
+    // Averaging over a ring r times spreads over sqrt(r / 2) edge lengths.
+    const double edge = std::sqrt(edge_sum / (3.0 * static_cast<double>(mesh.face_count())));
+    const double ratio = edge > 0.0 ? smoothing / edge : 0.0;
+    const int rounds =
+        static_cast<int>(std::min<double>(max_rounds, std::ceil(2.0 * ratio * ratio)));
+    for (int r = 0; r < rounds; ++r)
+        smooth(mesh, area, normal);
+    for (Vec3& v : normal)
+        v = normalized(v);
+
+    // |dn|^2 over a triangle is k1^2 + k2^2 for the linear interpolant of the normals.
+    std::vector<double> squared(n, 0.0);
+    SizeField field;
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        const auto& t = mesh.triangle(f);
+        const Vec3 p = mesh.position(t[1]) - mesh.position(t[0]);
+        const Vec3 q = mesh.position(t[2]) - mesh.position(t[0]);
+        const Vec3 dp = normal[t[1]] - normal[t[0]], dq = normal[t[2]] - normal[t[0]];
+        const double det = norm_squared(cross(p, q));
+        if (!(det > 0.0))
+            continue;
+        const double gradient =
+            (dot(dp, dp) * dot(q, q) - 2.0 * dot(dp, dq) * dot(p, q) + dot(dq, dq) * dot(p, p)) /
+            det;
+        // The normals of a needle's corners tell little about curvature across it: a turn of the
+        // normal over the smoothing length is all that can be meant.
+        const double bounded = std::min(gradient, 4.0 / (smoothing * smoothing));
+        const double face_area = 0.5 * std::sqrt(det);
+        field.bending += bounded * face_area;
+        for (const Index v : t)
+            squared[v] += bounded * face_area / 3.0;
+    }
+    for (Index v = 0; v < n; ++v)
+        squared[v] = area[v] > 0.0 ? squared[v] / area[v] : 0.0;
+    for (int r = 0; r < rounds; ++r)
+        smooth(mesh, area, squared);
+
+    double total = 0.0, mean = 0.0;
+    for (Index v = 0; v < n; ++v) {
+        total += area[v];
+        mean += area[v] * std::pow(squared[v], 0.25);
+    }
+    mean = total > 0.0 ? mean / total : 0.0;
+    field.density.assign(n, 1.0);
+    for (Index v = 0; v < n && mean > 0.0; ++v)
+        field.density[v] = std::clamp(std::pow(squared[v], 0.25) / mean, min_density, max_density);
+    return field;
+}
+
+} // namespace bot2nurbs
