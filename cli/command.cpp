@@ -94,7 +94,7 @@ std::variant<Command, int> parse_command(int argc, char** argv)
     app.add_flag("--no-repair", no_repair, "Reject input that needs a repair")->group(input);
 
     const std::string domain = "Domain";
-    std::string domain_in, domain_out, tessellation;
+    std::string domain_in, domain_out, tessellation, validated;
     CLI::Option* domain_in_option =
         app.add_option("--domain-in", domain_in, "Use this domain instead of the automatic layout")
             ->type_name("FILE")
@@ -103,7 +103,7 @@ std::variant<Command, int> parse_command(int argc, char** argv)
         app.add_option("--domain-out", domain_out, "Write the domain; OUTPUT may then be left out")
             ->type_name("FILE")
             ->group(domain);
-    CLI::Option* validate = app.add_option("--validate-domain", command.domain,
+    CLI::Option* validate = app.add_option("--validate-domain", validated,
                                            "Check this domain against INPUT and convert nothing")
                                 ->type_name("FILE")
                                 ->group(domain);
@@ -175,6 +175,8 @@ std::variant<Command, int> parse_command(int argc, char** argv)
             std::fprintf(stderr, "bot2nurbs: %s writes no output file\n", name);
             return exit_code(ErrorCode::bad_option);
         }
+        if (*validate)
+            o.domain_in = validated;
     }
     return command;
 }

@@ -14,7 +14,6 @@ enum class Action { convert, check, validate_domain };
 struct Command {
     Action action = Action::convert;
     ConvertOptions options;
-    std::string domain;   //!< For validate_domain.
     std::string json;     //!< Where the report goes: a path, "-" for standard output, or nothing.
     unsigned threads = 0; //!< 0: all cores.
     bool quiet = false;

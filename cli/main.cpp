@@ -79,21 +79,39 @@ int run_convert(const Command& command, Context& context, Terminal& terminal)
                : put_report(report_to_json(command.options, *report), command.json, terminal);
 }
 
+//! The end of --check and --validate-domain. Their report is the data that was asked for: it goes
+//! to standard output, unless JSON goes there.
+int put_verdict(const std::vector<std::string>& lines, const std::string& json,
+                const std::optional<Error>& rejection, const Command& command, Terminal& terminal)
+{
+    if (command.json != "-")
+        for (const std::string& line : lines)
+            std::printf("%s\n", line.c_str());
+    if (!command.json.empty())
+        if (const int code = put_report(json, command.json, terminal))
+            return code;
+    return rejection ? exit_code(rejection->code) : 0;
+}
+
 int run_check(const Command& command, Context& context, Terminal& terminal)
 {
     const Result<InputReport> report = check_input(command.options, context);
     terminal.clear();
     if (!report)
         return fail(report.error(), terminal);
-    // The report is the data asked for: it goes to standard output, unless JSON goes there.
-    if (command.json != "-")
-        for (const std::string& line : describe(command.options, *report))
-            std::printf("%s\n", line.c_str());
-    if (!command.json.empty())
-        if (const int code =
-                put_report(input_report_to_json(command.options, *report), command.json, terminal))
-            return code;
-    return report->rejection ? exit_code(report->rejection->code) : 0;
+    return put_verdict(describe(command.options, *report),
+                       input_report_to_json(command.options, *report), report->rejection, command,
+                       terminal);
+}
+
+int run_validate(const Command& command, Context& context, Terminal& terminal)
+{
+    const Result<DomainFileReport> report = check_domain(command.options, context);
+    terminal.clear();
+    if (!report)
+        return fail(report.error(), terminal);
+    return put_verdict(describe(*report), domain_report_to_json(command.options, *report),
+                       report->rejection, command, terminal);
 }
 
 int run(const Command& command)
@@ -108,7 +126,7 @@ int run(const Command& command)
         switch (command.action) {
         case Action::convert: code = run_convert(command, context, terminal); break;
         case Action::check: code = run_check(command, context, terminal); break;
-        case Action::validate_domain: break;
+        case Action::validate_domain: code = run_validate(command, context, terminal); break;
         }
     } catch (const std::bad_alloc&) {
         code = fail({ErrorCode::internal, "out of memory", invalid_index}, terminal);

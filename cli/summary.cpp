@@ -36,6 +36,13 @@ std::string valence_text(const DomainReport& domain)
     return text;
 }
 
+std::string verdict(const std::optional<Error>& rejection)
+{
+    return rejection ? fmt::format("verdict: rejected ({}): {}", name(rejection->code),
+                                   rejection->message)
+                     : std::string("verdict: accepted");
+}
+
 std::string error_text(const Deviation& d, double diagonal, const std::string& unit)
 {
     const double percent = diagonal > 0.0 ? 100.0 / diagonal : 0.0;
@@ -116,10 +123,34 @@ std::vector<std::string> describe(const ConvertOptions& options, const InputRepo
     for (const RepairNote& note : report.repairs)
         lines.push_back(
             fmt::format("{} {}: {}", note.warning ? "note" : "repair", note.code, note.message));
-    lines.push_back(report.rejection
-                        ? fmt::format("verdict: rejected ({}): {}", name(report.rejection->code),
-                                      report.rejection->message)
-                        : std::string("verdict: accepted"));
+    lines.push_back(verdict(report.rejection));
+    return lines;
+}
+
+std::vector<std::string> describe(const DomainFileReport& report)
+{
+    std::vector<std::string> lines;
+    for (std::size_t i = 0; i < report.components.size(); ++i) {
+        const DomainValidation& c = report.components[i];
+        lines.push_back(fmt::format(
+            "component {}: {}, {}, {}, Euler characteristic {}, {} (largest valence {})", i + 1,
+            plural(c.quads, "quad", "quads"), plural(c.edges, "edge", "edges"),
+            plural(c.vertices, "vertex", "vertices"), c.euler_characteristic,
+            plural(c.extraordinary, "extraordinary vertex", "extraordinary vertices"),
+            c.max_valence));
+        if (c.charts.max_stretch > 0.0)
+            lines.push_back(fmt::format("  charts: stretch {:.3g} on average, {:.3g} at most (quad "
+                                        "{}); Jacobian {:.3g} to {:.3g} of the quad's mean",
+                                        c.charts.mean_stretch, c.charts.max_stretch,
+                                        c.charts.worst_quad, c.charts.min_jacobian,
+                                        c.charts.max_jacobian));
+        for (const DomainDefect& d : c.defects)
+            lines.push_back(fmt::format("  defect {}: {}", d.rule, d.message));
+        if (c.defect_count > c.defects.size())
+            lines.push_back(
+                fmt::format("  and {} more defects", c.defect_count - c.defects.size()));
+    }
+    lines.push_back(verdict(report.rejection));
     return lines;
 }
 

@@ -17,4 +17,7 @@ std::vector<std::string> stage_lines(const std::vector<StageRecord>& stages);
 //! What --check prints, a line each.
 std::vector<std::string> describe(const ConvertOptions& options, const InputReport& report);
 
+//! What --validate-domain prints, a line each.
+std::vector<std::string> describe(const DomainFileReport& report);
+
 } // namespace bot2nurbs::cli

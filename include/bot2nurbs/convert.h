@@ -6,6 +6,7 @@
 #include "bot2nurbs/fit_network.h"
 #include "bot2nurbs/report.h"
 #include "bot2nurbs/spline_network.h"
+#include "bot2nurbs/validate_domain.h"
 #include "bot2nurbs/write_brep.h"
 
 #include <cstdint>
@@ -76,5 +77,19 @@ Result<InputReport> check_input(const ConvertOptions& options, Context& context)
 
 //! The report as JSON, schema "bot2nurbs.check/1".
 std::string input_report_to_json(const ConvertOptions& options, const InputReport& report);
+
+//! What validate_domain() says of each component's domain in a file.
+struct DomainFileReport {
+    std::vector<DomainValidation> components; //!< In the order of the components of the input.
+    std::optional<Error> rejection;           //!< Why convert() would refuse the file.
+};
+
+//! Checks the domain file `options.domain_in` against `options.input` without converting. Errors:
+//! those of the first stages of convert(); cannot_read; cancelled. A file that belongs to another
+//! mesh or breaks a rule is no error but a rejection.
+Result<DomainFileReport> check_domain(const ConvertOptions& options, Context& context);
+
+//! The report as JSON, schema "bot2nurbs.domain-check/1".
+std::string domain_report_to_json(const ConvertOptions& options, const DomainFileReport& report);
 
 } // namespace bot2nurbs

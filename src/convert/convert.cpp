@@ -3,6 +3,7 @@
 
 #include "bot2nurbs/domain_file.h"
 #include "convert/component.h"
+#include "convert/domain_input.h"
 #include "convert/input.h"
 #include "convert/tessellation.h"
 #include "io/atomic_file.h"
@@ -11,8 +12,6 @@
 #include <cctype>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 #include <unistd.h>
@@ -90,17 +89,6 @@ Error bad_option(std::string message)
     return {ErrorCode::bad_option, std::move(message), invalid_index};
 }
 
-Result<std::string> read_text(const std::string& path)
-{
-    std::ifstream file(path, std::ios::binary);
-    if (!file)
-        return Error{ErrorCode::cannot_read, "cannot open " + path, invalid_index};
-    std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    if (file.bad())
-        return Error{ErrorCode::cannot_read, "cannot read " + path, invalid_index};
-    return text;
-}
-
 void add_input_warnings(const PreparedInput& input, ConvertReport& report)
 {
     for (const RepairNote& note : input.mesh.notes) {
@@ -132,27 +120,6 @@ void add_input_warnings(const PreparedInput& input, ConvertReport& report)
                              "as a solid of its own",
                              c + 1, input.mesh.components[c].surrounded_by + 1),
                  input.mesh.components[c].source_face.front()});
-}
-
-//! The supplied domains, one per component, or none.
-Result<std::vector<QuadDomain>> supplied_domains(const ConvertOptions& options,
-                                                 const RepairedMesh& mesh)
-{
-    if (!options.domain_in)
-        return std::vector<QuadDomain>{};
-    const Result<std::string> text = read_text(*options.domain_in);
-    if (!text)
-        return text.error();
-    std::vector<ManifoldMesh> sources;
-    for (const MeshComponent& c : mesh.components)
-        sources.push_back(c.mesh);
-    Result<std::vector<QuadDomain>> domains = domains_from_json(*text, sources);
-    if (!domains) {
-        Error error = domains.error();
-        error.message = *options.domain_in + ": " + error.message;
-        return error;
-    }
-    return domains;
 }
 
 struct PendingFile {
@@ -276,9 +243,13 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
     report.sharp_edges = input->found.sharp_edges;
     add_input_warnings(*input, report);
 
-    Result<std::vector<QuadDomain>> supplied = supplied_domains(options, mesh);
-    if (!supplied)
-        return supplied.error();
+    std::vector<QuadDomain> supplied;
+    if (options.domain_in) {
+        Result<std::vector<QuadDomain>> domains = valid_domains(*options.domain_in, mesh, context);
+        if (!domains)
+            return domains.error();
+        supplied = std::move(*domains);
+    }
 
     // The knot forms that the outputs need, each made once.
     std::vector<KnotForm> forms;
@@ -295,7 +266,7 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
     for (std::size_t c = 0; c < count; ++c) {
         std::optional<QuadDomain> domain;
         if (options.domain_in)
-            domain = std::move((*supplied)[c]);
+            domain = std::move(supplied[c]);
         const std::string suffix = count > 1 ? fmt::format(" {}/{}", c + 1, count) : "";
         Result<ConvertedComponent> converted = convert_component(
             mesh.components[c], std::move(domain), options, forms, suffix, context);

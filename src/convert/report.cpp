@@ -412,6 +412,43 @@ std::string input_report_to_json(const ConvertOptions& options, const InputRepor
     return text_of(j);
 }
 
+std::string domain_report_to_json(const ConvertOptions& options, const DomainFileReport& report)
+{
+    Json j;
+    j["schema"] = "bot2nurbs.domain-check/1";
+    j["version"] = BOT2NURBS_VERSION;
+    j["input"] = {{"path", options.input}};
+    j["domain"] = {{"path", options.domain_in.value_or("")}};
+    j["components"] = Json::array();
+    for (const DomainValidation& c : report.components) {
+        Json defects = Json::array();
+        for (const DomainDefect& d : c.defects)
+            defects.push_back(
+                {{"rule", d.rule}, {"message", d.message}, {"element", index_or_null(d.element)}});
+        j["components"].push_back({{"valid", c.valid()},
+                                   {"quads", c.quads},
+                                   {"edges", c.edges},
+                                   {"vertices", c.vertices},
+                                   {"extraordinary", c.extraordinary},
+                                   {"max_valence", c.max_valence},
+                                   {"euler_characteristic", c.euler_characteristic},
+                                   {"boundary_loops", c.boundary_loops},
+                                   {"mean_stretch", c.charts.mean_stretch},
+                                   {"max_stretch", c.charts.max_stretch},
+                                   {"worst_quad", index_or_null(c.charts.worst_quad)},
+                                   {"min_jacobian", c.charts.min_jacobian},
+                                   {"max_jacobian", c.charts.max_jacobian},
+                                   {"min_area", c.charts.min_area},
+                                   {"max_area", c.charts.max_area},
+                                   {"defect_count", c.defect_count},
+                                   {"defects", defects}});
+    }
+    j["accepted"] = !report.rejection;
+    if (report.rejection)
+        j["rejection"] = error_json(*report.rejection);
+    return text_of(j);
+}
+
 Status write_report(const std::string& json, const std::string& path)
 {
     return write_whole_file(path, json);

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "convert/domain_input.h"
+
+#include "bot2nurbs/convert.h"
+#include "bot2nurbs/domain_file.h"
+#include "bot2nurbs/validate_domain.h"
+#include "convert/input.h"
+
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+namespace bot2nurbs {
+
+namespace {
+
+Result<std::string> read_text(const std::string& path)
+{
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        return Error{ErrorCode::cannot_read, "cannot open " + path, invalid_index};
+    std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    if (file.bad())
+        return Error{ErrorCode::cannot_read, "cannot read " + path, invalid_index};
+    return text;
+}
+
+Error in_file(const std::string& path, Error error)
+{
+    error.message = path + ": " + error.message;
+    return error;
+}
+
+Result<std::vector<QuadDomain>> read_domains(const std::string& path, const RepairedMesh& mesh)
+{
+    const Result<std::string> text = read_text(path);
+    if (!text)
+        return text.error();
+    std::vector<ManifoldMesh> sources;
+    for (const MeshComponent& c : mesh.components)
+        sources.push_back(c.mesh);
+    Result<std::vector<QuadDomain>> domains = domains_from_json(*text, sources);
+    return domains ? std::move(domains) : in_file(path, domains.error());
+}
+
+std::optional<Error> first_defect(const std::string& path, const DomainValidation& validation)
+{
+    if (validation.valid())
+        return std::nullopt;
+    const DomainDefect& d = validation.defects.front();
+    const std::size_t others = validation.defect_count - 1;
+    const std::string more = others == 0 ? std::string() : fmt::format(" (and {} more)", others);
+    return in_file(path,
+                   {ErrorCode::invalid_domain,
+                    fmt::format("{}: {}{}. --validate-domain lists all", d.rule, d.message, more),
+                    d.element});
+}
+
+} // namespace
+
+Result<std::vector<QuadDomain>> valid_domains(const std::string& path, const RepairedMesh& mesh,
+                                              Context& context)
+{
+    context.begin_stage("domain");
+    Result<std::vector<QuadDomain>> domains = read_domains(path, mesh);
+    if (!domains)
+        return domains;
+    ValidateOptions options;
+    options.charts = false;
+    for (std::size_t c = 0; c < domains->size(); ++c) {
+        const Result<DomainValidation> validation =
+            validate_domain(mesh.components[c].mesh, (*domains)[c], context, options);
+        if (!validation)
+            return validation.error();
+        if (const std::optional<Error> defect = first_defect(path, *validation))
+            return *defect;
+    }
+    return domains;
+}
+
+Result<DomainFileReport> check_domain(const ConvertOptions& options, Context& context)
+{
+    if (!options.domain_in)
+        return Error{ErrorCode::bad_option, "no domain file is named", invalid_index};
+    const Result<PreparedInput> input = prepare_input(options, context);
+    if (!input)
+        return input.error();
+    context.begin_stage("domain");
+    DomainFileReport report;
+    const Result<std::vector<QuadDomain>> domains = read_domains(*options.domain_in, input->mesh);
+    if (!domains) {
+        const ErrorCode code = domains.error().code;
+        if (code != ErrorCode::stale_domain && code != ErrorCode::invalid_domain)
+            return domains.error();
+        report.rejection = domains.error();
+        return report;
+    }
+    for (std::size_t c = 0; c < domains->size(); ++c) {
+        Result<DomainValidation> validation =
+            validate_domain(input->mesh.components[c].mesh, (*domains)[c], context);
+        if (!validation)
+            return validation.error();
+        if (!report.rejection)
+            report.rejection = first_defect(*options.domain_in, *validation);
+        report.components.push_back(std::move(*validation));
+    }
+    context.end_stage();
+    return report;
+}
+
+} // namespace bot2nurbs
