@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -18,7 +19,7 @@ namespace bot2nurbs {
 //! \return false when the context was cancelled: some chunks may not have run. Polled before every
 //! chunk, so a chunk should take well under 50 ms.
 template <class Body>
-bool for_each_chunk(const Context &context, std::size_t count, std::size_t chunk, const Body &body)
+bool for_each_chunk(const Context& context, std::size_t count, std::size_t chunk, const Body& body)
 {
     const std::size_t chunks = (count + chunk - 1) / chunk;
     const auto run = [&](std::size_t c) {
@@ -29,12 +30,14 @@ bool for_each_chunk(const Context &context, std::size_t count, std::size_t chunk
         for (std::size_t c = 0; c < chunks; ++c)
             run(c);
     } else {
-        oneapi::tbb::task_arena arena(context.threads == 0 ? oneapi::tbb::task_arena::automatic
-                                                           : static_cast<int>(context.threads));
+        // More threads than cores only make TBB print a warning.
+        const int cores = oneapi::tbb::info::default_concurrency();
+        oneapi::tbb::task_arena arena(
+            context.threads == 0 ? cores : std::min(static_cast<int>(context.threads), cores));
         arena.execute([&] {
             oneapi::tbb::parallel_for(
                 oneapi::tbb::blocked_range<std::size_t>(0, chunks, 1),
-                [&](const oneapi::tbb::blocked_range<std::size_t> &range) {
+                [&](const oneapi::tbb::blocked_range<std::size_t>& range) {
                     for (std::size_t c = range.begin(); c != range.end(); ++c)
                         run(c);
                 },
