@@ -3,7 +3,7 @@
 
 #include "io/atomic_file.h"
 #include "io/occ_shape.h"
-#include "io/utf8.h"
+#include "io/step_text.h"
 #include "io/write_checks.h"
 
 #include <APIHeaderSection_MakeHeader.hxx>
@@ -12,9 +12,11 @@
 #include <STEPControl_Controller.hxx>
 #include <STEPControl_Writer.hxx>
 #include <Standard_Failure.hxx>
+#include <StepBasic_Product.hxx>
 #include <StepData_Protocol.hxx>
 #include <StepData_StepModel.hxx>
 #include <StepData_StepWriter.hxx>
+#include <StepRepr_RepresentationItem.hxx>
 #include <StepShape_ManifoldSolidBrep.hxx>
 #include <StepShape_ShellBasedSurfaceModel.hxx>
 #include <TCollection_HAsciiString.hxx>
@@ -68,32 +70,17 @@ Handle(TCollection_HAsciiString) text(const std::string& s)
     return new TCollection_HAsciiString(s.c_str());
 }
 
-//! A string of ISO 10303-21: characters outside ASCII as \X2\ or \X4\ with hexadecimal digits,
-//! control characters left out.
-std::string step_string(std::string_view utf8)
-{
-    constexpr char digits[] = "0123456789ABCDEF";
-    std::string out;
-    while (!utf8.empty()) {
-        const std::uint32_t c = next_code_point(utf8);
-        if (c >= 0x20 && c < 0x7F) {
-            out += static_cast<char>(c);
-        } else if (c >= 0x80) {
-            const int width = c >= 0x10000 ? 8 : 4;
-            out += width == 8 ? "\\X4\\" : "\\X2\\";
-            for (int shift = 4 * (width - 1); shift >= 0; shift -= 4)
-                out += digits[c >> shift & 0xF];
-            out += "\\X0\\";
-        }
-    }
-    return out;
-}
-
-//! Gives the solids and surface models that a transfer added the name of their product.
+//! Gives the product, and the solids and surface models that a transfer added, their name.
 void name_items(const Handle(StepData_StepModel) & model, int first, const std::string& name)
 {
     for (int i = first; i <= model->NbEntities(); ++i) {
-        const auto item = Handle(StepRepr_RepresentationItem)::DownCast(model->Value(i));
+        const Handle(Standard_Transient) entity = model->Value(i);
+        const auto product = Handle(StepBasic_Product)::DownCast(entity);
+        if (!product.IsNull()) {
+            product->SetId(text(name));
+            product->SetName(text(name));
+        }
+        const auto item = Handle(StepRepr_RepresentationItem)::DownCast(entity);
         if (!item.IsNull() && (item->IsKind(STANDARD_TYPE(StepShape_ManifoldSolidBrep)) ||
                                item->IsKind(STANDARD_TYPE(StepShape_ShellBasedSurfaceModel))))
             item->SetName(text(name));
@@ -103,7 +90,7 @@ void name_items(const Handle(StepData_StepModel) & model, int first, const std::
 void write_header(const Handle(StepData_StepModel) & model, const std::string& title)
 {
     APIHeaderSection_MakeHeader header(model);
-    header.SetName(text(step_string(title)));
+    header.SetName(text(title));
     header.SetTimeStamp(text(no_time));
     header.SetAuthorValue(1, text(""));
     header.SetOrganizationValue(1, text(""));
@@ -128,30 +115,30 @@ Result<std::string> make_step(const std::vector<Brep>& breps, const WriteOptions
     const ScopedParameter schema("write.step.schema",
                                  options.step_schema == StepSchema::ap242 ? "AP242DIS" : "AP214IS");
 
+    std::vector<std::string> names{options.title};
     STEPControl_Writer writer;
     const Handle(StepData_StepModel) model = writer.Model(true);
     for (std::size_t i = 0; i < breps.size(); ++i) {
         const Result<TopoDS_Shape> shape = brep_to_shape(breps[i]);
         if (!shape)
             return shape.error();
-        const std::string name =
-            breps[i].name.empty() ? "solid " + std::to_string(i + 1) : step_string(breps[i].name);
-        const ScopedParameter product("write.step.product.name", name);
+        // Names go in as marks: Open CASCADE numbers products and knows ASCII alone.
+        names.push_back(breps[i].name.empty() ? "solid " + std::to_string(i + 1) : breps[i].name);
         const int before = model->NbEntities();
         if (writer.Transfer(*shape, STEPControl_AsIs) != IFSelect_RetDone)
             return step_failed("object " + std::to_string(i) + " was not transferred");
-        name_items(model, before + 1, name);
+        name_items(model, before + 1, step_name_mark(i + 1));
     }
-    write_header(model, options.title);
+    write_header(model, step_name_mark(0));
 
     StepData_StepWriter out(model);
     out.FloatWriter().SetFormat(exact_real);
-    out.FloatWriter().SetZeroSuppress(true);
+    out.FloatWriter().SetZeroSuppress(false); // it cuts off exponents of long numbers
     out.SendModel(Handle(StepData_Protocol)::DownCast(writer.WS()->Protocol()));
     std::ostringstream stream;
     if (!out.Print(stream))
         return step_failed("it could not be printed");
-    return stream.str();
+    return finish_step_text(stream.str(), names);
 }
 
 } // namespace
