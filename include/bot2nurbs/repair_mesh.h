@@ -50,7 +50,8 @@ struct RepairedMesh {
 
 //! Makes manifold meshes of a soup by harmless changes only, and says what it changed:
 //! 1. weld: vertices of open edges that agree within the weld distance become one. Vertices inside
-//!    a closed fan of faces are left alone, so that solids that merely touch stay apart;
+//!    a closed fan of faces are left alone, so that solids that merely touch stay apart, and fans
+//!    that the weld would only join in a point keep vertices of their own;
 //! 2. repeated_vertex, duplicate_face: such faces go (of copies the first stays);
 //! 3. collapsed_edge, flipped_cap: faces without area go; an edge of no length is collapsed, a
 //!    corner on its opposite edge splits that edge's other face. What cannot go without tearing or
@@ -62,6 +63,7 @@ struct RepairedMesh {
 //! 6. unused_vertex: vertices without faces go;
 //! 7. with split_nonmanifold: split_edge, split_vertex.
 //!
+//! Further warning: no_volume (a closed component that is flat or folded back on itself).
 //! Open components are no error. Errors: empty_input; bad_geometry (invalid index, not finite, or
 //! all points at one place); not_manifold, not_orientable, naming the first element in the
 //! numbering of the soup; bad_option; cancelled. Cost O(F log F).

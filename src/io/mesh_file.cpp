@@ -57,14 +57,14 @@ Result<TriangleSoup> finish_soup(const MeshFile& file, std::vector<Vec3> positio
     if (polygons.corners.size() > 2 * polygons.size())
         soup.triangles.reserve(polygons.corners.size() - 2 * polygons.size());
     soup.source_face.reserve(soup.triangles.capacity());
+    PolygonTriangulator triangulator(soup.positions, polygons);
     std::size_t small = 0;
     for (std::size_t p = 0; p < polygons.size(); ++p) {
         if (p % elements_per_poll == 0 && context.cancelled())
             return Context::cancelled_error("read");
         const std::size_t count = polygons.first[p + 1] - polygons.first[p];
         small += count < 3;
-        triangulate_polygon(soup.positions, polygons.corners.data() + polygons.first[p], count,
-                            soup.triangles);
+        triangulator.triangulate(p, soup.triangles);
         soup.source_face.resize(soup.triangles.size(), static_cast<Index>(p));
     }
     if (small > 0)

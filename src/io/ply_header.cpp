@@ -47,8 +47,8 @@ std::size_t PlyElement::least_bytes(PlyFormat format) const
 std::size_t PlyElement::find(std::initializer_list<const char*> names) const
 {
     for (std::size_t i = 0; i < properties.size(); ++i)
-        for (const char* name : names)
-            if (properties[i].name == name)
+        for (const char* wanted : names)
+            if (properties[i].name == wanted)
                 return i;
     return properties.size();
 }

@@ -140,17 +140,58 @@ private:
             if (topology.face_count(topology.edge_of(h)) == 1)
                 open[topology.from(h)] = open[topology.from(SoupTopology::next(h))] = 1;
         const std::vector<Index> group = weld_points(soup_.positions, open, distance_);
-        Index welded = 0;
+        bool any = false;
         for (Index v = 0; v < group.size(); ++v)
-            welded += group[v] != v;
-        if (welded == 0)
+            any = any || group[v] != v;
+        if (!any)
             return;
+        const std::vector<std::array<Index, 3>> before = triangles_;
         for (auto& t : triangles_)
             for (Index& v : t)
                 v = group[v];
+        keep_fans_apart(before);
+        std::vector<char> used_before(group.size(), 0), used_after(group.size(), 0);
+        for (std::size_t f = 0; f < triangles_.size(); ++f)
+            for (int k = 0; k < 3; ++k) {
+                used_before[before[f][k]] = 1;
+                used_after[triangles_[f][k]] = 1;
+            }
+        Index welded = 0;
+        for (Index v = 0; v < group.size(); ++v)
+            welded += used_before[v] && !used_after[v];
         note("weld", welded,
              "welded " + count_of(welded, "vertex to another", "vertices to others") +
                  " at the same place");
+    }
+
+    //! Where welding only made separate fans meet in a point, each gets a vertex of its own back:
+    //! the smallest of those that it was welded from. Vertices of edges with more than two faces
+    //! stay as they are, so that the error can name these.
+    void keep_fans_apart(const std::vector<std::array<Index, 3>>& before)
+    {
+        const Index vertices = static_cast<Index>(soup_.positions.size());
+        // Faces that the weld made repeat a vertex hang on nothing.
+        std::vector<std::array<Index, 3>> sound;
+        std::vector<std::size_t> face;
+        for (std::size_t f = 0; f < triangles_.size(); ++f) {
+            const auto& t = triangles_[f];
+            if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) {
+                sound.push_back(t);
+                face.push_back(f);
+            }
+        }
+        const SoupTopology topology(vertices, sound);
+        std::vector<char> fixed(vertices, 0);
+        for (Index h = 0; h < 3 * sound.size(); ++h)
+            if (topology.face_count(topology.edge_of(h)) > 2)
+                fixed[topology.from(h)] = fixed[topology.from(SoupTopology::next(h))] = 1;
+        const std::vector<Index> fans = topology.fans_per_vertex(vertices);
+        std::vector<Index> own(topology.fan_count(), invalid_index);
+        for (Index h = 0; h < 3 * sound.size(); ++h)
+            own[topology.fan(h)] = std::min(own[topology.fan(h)], before[face[h / 3]][h % 3]);
+        for (Index h = 0; h < 3 * sound.size(); ++h)
+            if (fans[topology.from(h)] > 1 && !fixed[topology.from(h)])
+                triangles_[face[h / 3]][h % 3] = own[topology.fan(h)];
     }
 
     void remove_duplicates()
@@ -353,13 +394,17 @@ private:
         for (const MeshComponent& c : out_.components)
             meshes.push_back(&c.mesh);
         const Nesting nesting = find_nesting(meshes);
-        Index turned = 0, nested = 0;
+        Index turned = 0, nested = 0, empty = 0;
         for (std::size_t i = 0; i < out_.components.size(); ++i) {
             MeshComponent& c = out_.components[i];
             c.surrounded_by = nesting.parent[i];
             const bool hollow = nesting.depth[i] % 2 == 1;
             c.cavity = hollow && c.volume < 0.0;
             nested += hollow && c.volume > 0.0;
+            double area = 0.0;
+            for (Index f = 0; f < c.mesh.face_count(); ++f)
+                area += 0.5 * norm(c.mesh.area_vector(f));
+            empty += c.mesh.closed() && std::abs(c.volume) <= distance_ * area;
             if (c.cavity || !(c.volume < 0.0))
                 continue;
             std::vector<std::array<Index, 3>> triangles = c.mesh.triangles();
@@ -372,6 +417,10 @@ private:
         }
         note("turned_outward", turned,
              "turned " + count_of(turned, "closed component", "closed components") + " outward");
+        note("no_volume", empty,
+             count_of(empty, "closed component encloses", "closed components enclose") +
+                 " no volume",
+             true);
         note("nested_solid", nested,
              count_of(nested, "component lies", "components lie") +
                  " inside another and turns outward: taken as a solid of its own, not as a hollow",
