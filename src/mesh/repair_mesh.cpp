@@ -232,8 +232,7 @@ private:
     //! The first edge or vertex that is not manifold, named in the numbering of the soup.
     Status check_manifold(const SoupTopology& topology) const
     {
-        const char* advice = "; the option to split non-manifold elements would cut the surface "
-                             "apart there";
+        const char* advice = "; repairing with split_nonmanifold cuts the surface apart there";
         Index thick = 0, worst = invalid_index;
         for (Index e = 0; e < topology.edge_count(); ++e) {
             if (topology.face_count(e) <= 2)

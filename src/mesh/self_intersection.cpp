@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/self_intersection.h"
 
+#include "core/parallel.h"
 #include "core/predicates.h"
 #include "mesh/box_tree.h"
 
 #include <algorithm>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 namespace bot2nurbs {
 
@@ -15,7 +14,7 @@ namespace {
 // Faces a parallel task looks at, and tasks between two looks at the totals. Fixed, so that the
 // place where a search is cut short does not depend on the threads.
 constexpr Index faces_per_task = 256;
-constexpr Index tasks_per_round = 16;
+constexpr Index tasks_per_round = 8;
 
 // Candidate pairs (boxes that meet) after which a search is cut short: a mesh has about 8 a face;
 // only a hopeless soup has 500.
@@ -196,8 +195,6 @@ SelfIntersections find_self_intersections(const std::vector<Vec3>& positions,
     const std::uint64_t limit = std::max(least_candidates, candidates_per_face * faces);
     std::uint64_t candidates = 0;
     const Index tasks = (faces + faces_per_task - 1) / faces_per_task;
-    tbb::task_arena arena(context.threads == 0 ? tbb::task_arena::automatic
-                                               : static_cast<int>(context.threads));
     for (Index first = 0; first < tasks; first += tasks_per_round) {
         if (context.cancelled() || candidates > limit) {
             result.complete = false;
@@ -205,12 +202,12 @@ SelfIntersections find_self_intersections(const std::vector<Vec3>& positions,
         }
         const Index last = std::min(tasks, first + tasks_per_round);
         std::vector<Task> round(last - first);
-        arena.execute([&] {
-            tbb::parallel_for(first, last, [&](Index task) {
-                search(task * faces_per_task, std::min(faces, (task + 1) * faces_per_task),
-                       round[task - first]);
-            });
+        for_each_chunk(context, round.size(), 1, [&](std::size_t i, std::size_t) {
+            const Index task = first + static_cast<Index>(i);
+            search(task * faces_per_task, std::min(faces, (task + 1) * faces_per_task), round[i]);
         });
+        if (context.cancelled())
+            result.complete = false;
         for (const Task& task : round) {
             result.count += task.count;
             candidates += task.candidates;
