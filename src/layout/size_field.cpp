@@ -74,7 +74,7 @@ SizeField measure_size_field(const ManifoldMesh& mesh, double smoothing)
             det;
         // The normals of a needle's corners tell little about curvature across it: a turn of the
         // normal over the smoothing length is all that can be meant.
-        const double bounded = std::min(gradient, 4.0 / (smoothing * smoothing));
+        const double bounded = std::clamp(gradient, 0.0, 4.0 / (smoothing * smoothing));
         const double face_area = 0.5 * std::sqrt(det);
         field.bending += bounded * face_area;
         for (const Index v : t)
