@@ -99,7 +99,7 @@ Status write_whole_file(const std::string& path, std::string_view bytes)
     if (exists && !S_ISREG(old.st_mode))
         return write_directly(path, bytes);
     // A rename would replace a file that may not be written to.
-    if (exists && ::access(target.c_str(), W_OK) != 0)
+    if (exists && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
         return cannot_write(path, errno);
 
     std::string temporary;

@@ -235,44 +235,6 @@ INSTANTIATE_TEST_SUITE_P(
                              }}),
     rule_name);
 
-//! One quad over the square, its points placed by a function.
-template <class Point> Brep one_face(Point point)
-{
-    const Domain d = disk_grid(1, 1);
-    Result<Brep> brep = assemble_brep(d.complex, surface_of_points(1, point), KnotForm::c1);
-    // Built by hand where assemble_brep itself refuses: the arrays of a good face, other points.
-    Brep b = brep ? *brep
-                  : must_assemble(d.complex,
-                                  surface_of_points(1,
-                                                    [](Index, Index i, Index j) {
-                                                        return Vec3{double(i), double(j), 0.0};
-                                                    }),
-                                  KnotForm::c1);
-    const std::array<Index, 10> pick{0, 1, 2, 4, 5, 7, 8, 10, 11, 12};
-    BsplinePatch& s = b.surfaces[0];
-    for (Index i = 0; i < 10; ++i) {
-        for (Index j = 0; j < 10; ++j)
-            s.control[10 * i + j] = point(0, pick[i], pick[j]);
-    }
-    for (const BrepTrim& t : b.trims) {
-        BrepCurve3& c = b.curves3[b.edges[t.edge].curve];
-        for (Index k = 0; k < 10; ++k) {
-            const Index i = t.iso == TrimIso::south   ? k
-                            : t.iso == TrimIso::east  ? 9
-                            : t.iso == TrimIso::north ? 9 - k
-                                                      : 0;
-            const Index j = t.iso == TrimIso::south   ? 0
-                            : t.iso == TrimIso::east  ? k
-                            : t.iso == TrimIso::north ? 9
-                                                      : 9 - k;
-            c.control[t.reversed ? 9 - k : k] = s.control[10 * i + j];
-        }
-        b.vertices[b.edges[t.edge].vertex[0]].point = c.control.front();
-        b.vertices[b.edges[t.edge].vertex[1]].point = c.control.back();
-    }
-    return b;
-}
-
 TEST(CheckBrep, a_face_without_area_is_degenerate)
 {
     const Brep brep = one_face([](Index, Index i, Index j) {
@@ -350,39 +312,6 @@ TEST(CheckBrep, overlapping_parts_are_warned_about)
     EXPECT_EQ(report.genus(), 0);
     EXPECT_EQ(names(report.warnings), std::set<std::string>{"possible_self_intersection"});
     EXPECT_TRUE(check_brep(sphere()).warnings.empty());
-}
-
-//! An open tube of one face, closed in u: one seam edge, two closed boundary edges.
-Brep seam_tube()
-{
-    const Brep patch = one_face([](Index, Index i, Index j) {
-        const double a = i == 12 ? 0.0 : M_PI / 6 * i;
-        return Vec3{std::cos(a), std::sin(a), j / 12.0};
-    });
-    Brep b;
-    b.surfaces = patch.surfaces;
-    b.curves2 = {{{0, 0}, {4, 0}, 0, 4},
-                 {{4, 0}, {4, 4}, 0, 4},
-                 {{4, 4}, {0, 4}, 0, 4},
-                 {{0, 4}, {0, 0}, 0, 4}};
-    // Curves: bottom circle, seam upward, top circle; all in the direction of growing parameters.
-    const auto pick = [&](Index start, Index step) {
-        BrepCurve3 c;
-        c.knots = b.surfaces[0].knots;
-        for (Index k = 0; k < 10; ++k)
-            c.control.push_back(b.surfaces[0].control[start + step * k]);
-        return c;
-    };
-    b.curves3 = {pick(0, 10), pick(0, 1), pick(9, 10)};
-    b.vertices = {{b.curves3[0].control[0], {0, 0, 1}}, {b.curves3[2].control[0], {1, 2, 2}}};
-    b.edges = {{0, {0, 0}, {0}, 0, 4}, {1, {0, 1}, {1, 3}, 0, 4}, {2, {1, 1}, {2}, 0, 4}};
-    b.trims = {{0, 0, {0, 0}, false, TrimType::boundary, TrimIso::south, 0, 0, 4},
-               {1, 1, {0, 1}, false, TrimType::seam, TrimIso::east, 0, 0, 4},
-               {2, 2, {1, 1}, true, TrimType::boundary, TrimIso::north, 0, 0, 4},
-               {3, 1, {1, 0}, true, TrimType::seam, TrimIso::west, 0, 0, 4}};
-    b.loops = {{{0, 1, 2, 3}, 0}};
-    b.faces = {{{0}, 0, false}};
-    return b;
 }
 
 TEST(CheckBrep, a_face_that_meets_itself_has_a_seam)

@@ -3,6 +3,9 @@
 //
 //   judge_occ FILE [--solids N] [--closed] [--volume V --volume-share S] [--tolerance-share S]
 //
+// Lengths and volumes are in millimetres. --closed: every edge of two faces, shells closed, solids
+// outward. --volume: of all solids together, within the share S (default 0.005). --tolerance-share:
+// the largest tolerance is at most this share of the diagonal of the box.
 // Exit code: 0 all that was asked for holds (always: BRepCheck finds the shape valid), 1 it does
 // not (the JSON lists what in "failed"), 2 usage, 3 not readable.
 #include <BRepBndLib.hxx>
@@ -16,6 +19,7 @@
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
+#include <Precision.hxx>
 #include <STEPControl_Controller.hxx>
 #include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
@@ -37,6 +41,7 @@
 #include <cmath>
 #include <iostream>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -149,9 +154,8 @@ void judge(const TopoDS_Shape& shape, const Options& o, nlohmann::json& report)
         shared_by_more += uses > 2;
     }
     bool all_closed = true;
-    for_each(shape, TopAbs_SHELL, [&](const TopoDS_Shape& s) {
-        all_closed = all_closed && BRep_Tool::IsClosed(s);
-    });
+    for_each(shape, TopAbs_SHELL,
+             [&](const TopoDS_Shape& s) { all_closed = all_closed && BRep_Tool::IsClosed(s); });
     const int solids = count(shape, TopAbs_SOLID);
     if (o.solids && solids != *o.solids)
         failed.push_back("solids");
@@ -176,7 +180,9 @@ void judge(const TopoDS_Shape& shape, const Options& o, nlohmann::json& report)
     BRepBndLib::AddOptimal(shape, box, false, false);
     const double diagonal = std::sqrt(box.SquareExtent());
     const double tolerance = largest_tolerance(shape);
-    if (o.tolerance_share && !(tolerance <= *o.tolerance_share * diagonal))
+    // Open CASCADE knows no tolerance below its confusion distance.
+    if (o.tolerance_share &&
+        !(tolerance <= std::max(*o.tolerance_share * diagonal, Precision::Confusion())))
         failed.push_back("tolerance");
 
     report["valid"] = valid;
@@ -207,6 +213,9 @@ int main(int argc, char** argv)
     }
     Message::DefaultMessenger()->ChangePrinters().Clear();
     nlohmann::json report;
+    // The readers of Open CASCADE print complaints to the output that is to be JSON.
+    std::ostringstream complaints;
+    std::streambuf* const output = std::cout.rdbuf(complaints.rdbuf());
     try {
         const TopoDS_Shape shape = read(options->file, report);
         report["readable"] = !shape.IsNull();
@@ -216,6 +225,7 @@ int main(int argc, char** argv)
         report["readable"] = false;
         report["exception"] = failure.GetMessageString();
     }
+    std::cout.rdbuf(output);
     std::cout << report.dump(1) << "\n";
     if (!report["readable"].get<bool>())
         return 3;
