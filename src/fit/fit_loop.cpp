@@ -16,11 +16,12 @@ namespace bot2nurbs {
 namespace {
 
 //! Point-distance part of the tangent-distance rows: a tenth in the first tangent round, then a
-//! tenth of the last after every accepted round. Lower floors move the parametrisation faster and
-//! end in slightly worse minima (measured: docs/algorithms/fit.md).
+//! tenth of the last after every accepted round. It is what holds the parametrisation in place;
+//! with a floor of 1e-4 many surfaces are still sliding towards their best after nine rounds, below
+//! 1e-5 nothing is gained (measured: docs/algorithms/fit.md).
 constexpr double first_mu = 0.1;
 constexpr double mu_factor = 0.1;
-constexpr double mu_floor = 1e-4;
+constexpr double mu_floor = 1e-5;
 //! The first solve and four corrections, as \cite eck_hoppe_1996 used.
 constexpr int least_rounds = 5;
 //! Fairness falls by this a round.
@@ -38,7 +39,8 @@ constexpr double mad_to_deviation = 1.4826;
 constexpr double least_deviation = 1e-12;
 //! An accepted round may raise the objective by rounding only.
 constexpr double rounding = 1e-12;
-//! A quad counts with at least this share of the mean area, so that collapsed quads stay fair.
+//! A place counts with at least this share of the mean area per parameter, so that collapsed places
+//! neither outweigh all others nor lose their fairness.
 constexpr double least_share = 1e-3;
 //! Above this many multiplications (about a minute) a coupled factorisation is not attempted and
 //! point-distance rows are used instead.
@@ -66,18 +68,10 @@ std::vector<double> quad_energies(const SplineSurface& surface)
     return energy;
 }
 
-//! Area of every quad by midpoints of its Bezier pieces.
-std::vector<double> quad_areas(const SplineSurface& surface)
+//! Area per unit of the quad's parameters at a foot, kept away from zero by the mean.
+double speed_at(const SurfacePoint& s, double mean)
 {
-    constexpr int side = 2 * pieces_per_side;
-    std::vector<double> area(surface.patch_count(), 0.0);
-    for (Index q = 0; q < surface.patch_count(); ++q)
-        for (int i = 0; i < side; ++i)
-            for (int j = 0; j < side; ++j) {
-                const SurfacePoint s = surface.evaluate({q, (i + 0.5) / side, (j + 0.5) / side});
-                area[q] += norm(cross(s.du, s.dv)) / (side * side);
-            }
-    return area;
+    return std::max(norm(cross(s.du, s.dv)), least_share * mean);
 }
 
 } // namespace
@@ -91,21 +85,39 @@ FitLoop::FitLoop(const SplineNetwork& network, const ReducedNetwork& reduced,
     coupled_affordable_ = 0.5 * 27.0 * system_.factor_work() <= coupled_work_limit;
 }
 
-void FitLoop::set_quad_share(const SplineSurface* surface)
+void FitLoop::weigh_by_samples()
 {
+    row_weights_ = weights;
     const Index quads = network_.complex.quad_count();
-    std::vector<double> area(quads, 0.0);
-    if (surface)
-        area = quad_areas(*surface);
-    else
-        for (std::size_t i = 0; i < where.size(); ++i)
-            area[where[i].quad] += weights[i];
-    double sum = 0.0;
-    for (const double a : area)
-        sum += a;
-    quad_share_.resize(quads);
+    quad_share_.assign(quads, 0.0);
+    for (std::size_t i = 0; i < where.size(); ++i)
+        quad_share_[where[i].quad] += weights[i];
+    for (double& share : quad_share_)
+        share = std::max(share, least_share / quads) / 16.0;
+}
+
+void FitLoop::weigh_by_surface(const State& state)
+{
+    constexpr int side = 2 * pieces_per_side;
+    constexpr double places = side * side;
+    const Index quads = network_.complex.quad_count();
+    std::vector<double> speed;
+    double area = 0.0;
     for (Index q = 0; q < quads; ++q)
-        quad_share_[q] = std::max(area[q] / sum, least_share / quads) / 16.0;
+        for (int i = 0; i < side; ++i)
+            for (int j = 0; j < side; ++j) {
+                const SurfacePoint s =
+                    state.surface.evaluate({q, (i + 0.5) / side, (j + 0.5) / side});
+                speed.push_back(norm(cross(s.du, s.dv)));
+                area += speed.back() / places;
+            }
+    const double mean = area / quads;
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        row_weights_[i] = weights[i] * std::sqrt(mean / speed_at(state.feet[i].surface, mean));
+    quad_share_.assign(quads, 0.0);
+    for (std::size_t k = 0; k < speed.size(); ++k)
+        quad_share_[k / (side * side)] +=
+            std::sqrt(std::max(speed[k], least_share * mean) * mean) / (places * 16.0 * area);
 }
 
 void FitLoop::set_fairness(double fairness)
@@ -127,7 +139,7 @@ std::vector<FitRow> FitLoop::rows_at(const State& state) const
         row.piece = 16 * d.quad + 4 * u.piece + v.piece;
         row.s = u.t;
         row.t = v.t;
-        row.weight = weights[i];
+        row.weight = row_weights_[i];
         if (state.feet.empty()) {
             row.residual = points[i];
             continue;
@@ -160,7 +172,7 @@ double FitLoop::objective(const State& state, const std::vector<double>& factors
 {
     double sum = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i)
-        sum += weights[i] * factors[i] * state.feet[i].distance * state.feet[i].distance;
+        sum += row_weights_[i] * factors[i] * state.feet[i].distance * state.feet[i].distance;
     for (std::size_t q = 0; q < fairness_.size(); ++q)
         sum += fairness_[q] * state.quad_energy[q];
     return sum;
@@ -296,13 +308,13 @@ Status FitLoop::run()
 
     double start = now();
     State state;
-    set_quad_share(nullptr);
+    weigh_by_samples();
     set_fairness(options_.fairness);
     round_floor_ = options_.fairness_floor;
     guard_ = FoldGuard(network_.complex.quad_count(), normals, where);
     if (const auto error = first_round(state))
         return error;
-    set_quad_share(&state.surface);
+    weigh_by_surface(state);
     if (!guard_.ready())
         guard_.set_reference(state.surface);
     state.folds = guard_.folds(state.surface, context_);

@@ -50,7 +50,12 @@ private:
     //! Huber weights from the distances; all one unless robust.
     std::vector<double> robust_factors(const State& state) const;
     double objective(const State& state, const std::vector<double>& factors) const;
-    void set_quad_share(const SplineSurface* surface);
+    //! First round: rows by area, as the samples say.
+    void weigh_by_samples();
+    //! Later rounds: halfway (geometrically) between weighing by area and by parameters, in which
+    //! the energy is measured. Weights by area alone leave the largest errors at extraordinary
+    //! vertices, where parameters crowd.
+    void weigh_by_surface(const State& state);
     void set_fairness(double fairness);
     void record(const State& state, double mu, double start);
 
@@ -59,9 +64,10 @@ private:
     const FitOptions& options_;
     Context& context_;
     NormalSystem system_;
-    std::vector<double> quad_share_; //!< Per quad: its share of the area, divided by 16.
-    std::vector<double> floor_;      //!< Per quad: least fairness.
-    std::vector<double> fairness_;   //!< Per quad: this round's factor of its energy.
+    std::vector<double> row_weights_; //!< Per sample.
+    std::vector<double> quad_share_;  //!< Per quad: its rows' share of the weight, over 16.
+    std::vector<double> floor_;       //!< Per quad: least fairness.
+    std::vector<double> fairness_;    //!< Per quad: this round's factor of its energy.
     double round_fairness_ = 0.0;
     double round_floor_ = 0.0; //!< Rises above the option when lower fairness folded the surface.
     FoldGuard guard_;

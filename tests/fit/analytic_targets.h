@@ -91,22 +91,31 @@ inline Vec3 bilinear(const fixtures::Domain& domain, const DomainPoint& d)
            d.u * ((1 - d.v) * p[q[1]] + d.v * p[q[2]]);
 }
 
-//! per_side^2 samples a quad at cell midpoints, weighted by the area they stand for.
-inline SurfaceSampleSet sample_target(const Target& target, int per_side)
+//! `per_piece`^2 samples on every 4 x 4th of a quad, weighted by the area they stand for: Gauss
+//! points where per_piece is 3, as the fit study used, otherwise cell midpoints.
+inline SurfaceSampleSet sample_target(const Target& target, int per_piece = 3)
 {
+    std::vector<double> place, share;
+    for (int piece = 0; piece < 4; ++piece)
+        for (int k = 0; k < per_piece; ++k) {
+            const bool gauss = per_piece == 3;
+            const double t = gauss ? 0.5 + (k - 1) * std::sqrt(0.15) : (k + 0.5) / per_piece;
+            place.push_back((piece + t) / 4.0);
+            share.push_back((gauss ? (k == 1 ? 8.0 : 5.0) / 18.0 : 1.0 / per_piece) / 4.0);
+        }
     SurfaceSampleSet samples;
-    const double step = 1e-5, cell = 1.0 / per_side;
+    const double step = 1e-5;
     for (Index q = 0; q < target.domain.complex.quad_count(); ++q)
-        for (int i = 0; i < per_side; ++i)
-            for (int j = 0; j < per_side; ++j) {
-                const DomainPoint d{q, (i + 0.5) * cell, (j + 0.5) * cell};
+        for (std::size_t i = 0; i < place.size(); ++i)
+            for (std::size_t j = 0; j < place.size(); ++j) {
+                const DomainPoint d{q, place[i], place[j]};
                 const auto at = [&](double du, double dv) {
                     return target.map(bilinear(target.domain, {q, d.u + du, d.v + dv}));
                 };
                 const Vec3 area = cross(at(step, 0) - at(-step, 0), at(0, step) - at(0, -step));
                 samples.positions.push_back(at(0, 0));
                 samples.normals.push_back(normalized(area));
-                samples.weights.push_back(norm(area) / (4 * step * step) * cell * cell);
+                samples.weights.push_back(norm(area) / (4 * step * step) * share[i] * share[j]);
                 samples.domain.push_back(d);
             }
     return samples;

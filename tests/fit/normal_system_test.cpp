@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT
+#include "fit/normal_system.h"
+
+#include "fit/bernstein_gram.h"
+#include "fit/stacked_rows.h"
+#include "spline/bernstein.h"
+
+#include "domain_fixtures.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+
+namespace bot2nurbs {
+namespace {
+
+constexpr double any_condition = 1e300;
+
+//! A random round on a domain with a constraint (valence 6), and its dense least-squares rows.
+struct RandomRound {
+    Result<SplineNetwork> network =
+        build_spline_network(fixtures::radial_bipyramid(6).complex, SplineScheme::peters);
+    Result<ReducedNetwork> reduced = ReducedNetwork::build(*network);
+    std::vector<FitRow> rows;
+    RowsByPiece groups;
+    std::vector<Vec3> bezier;
+    std::vector<double> fairness;
+    RoundProblem problem;
+
+    explicit RandomRound(double mu, int rows_per_piece = 20)
+    {
+        std::mt19937 generator(3);
+        std::uniform_real_distribution<double> value(0.0, 1.0);
+        const auto vector = [&] {
+            return Vec3{value(generator) - 0.5, value(generator) - 0.5, value(generator) - 0.5};
+        };
+        for (int k = 0; k < rows_per_piece; ++k)
+            for (Index p = 0; p < reduced->piece_count(); ++p)
+                rows.push_back({p, value(generator), value(generator), 0.1 + value(generator),
+                                vector(), k % 5 == 0 ? Vec3{} : normalized(vector())});
+        groups = group_by_piece(rows, reduced->piece_count());
+        std::vector<Vec3> free(reduced->free_count());
+        for (Vec3& x : free)
+            x = vector();
+        bezier = SplineSurface(*network, reduced->expand(free)).bezier();
+        for (Index q = 0; q < network->complex.quad_count(); ++q)
+            fairness.push_back(0.01 * (1.0 + q));
+        problem = {&rows, &groups, &bezier, &fairness, mu};
+    }
+
+    //! Matrix and right-hand side of the normal equations over all 3 N unknowns, x y z of unknown 0
+    //! first, summed row by row.
+    std::pair<Eigen::MatrixXd, Eigen::VectorXd> dense() const
+    {
+        const Eigen::Index n = 3 * static_cast<Eigen::Index>(reduced->free_count());
+        Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
+        Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+        const auto add = [&](Index piece, const Eigen::VectorXd& coefficients, const Vec3& along,
+                             double wanted, double weight) {
+            const Index k = reduced->piece_size(piece);
+            std::vector<std::pair<Index, double>> row;
+            for (Index i = 0; i < k; ++i) {
+                double sum = 0.0;
+                for (Index c = 0; c < 16; ++c)
+                    sum += coefficients[c] * reduced->piece_weights(piece)[k * c + i];
+                for (int a = 0; a < 3; ++a)
+                    if (along[a] != 0.0)
+                        row.emplace_back(3 * reduced->piece_unknowns(piece)[i] + a, sum * along[a]);
+            }
+            for (const auto& [r, x] : row) {
+                for (const auto& [c, y] : row)
+                    matrix(r, c) += weight * x * y;
+                right[r] += weight * x * wanted;
+            }
+        };
+        const Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        for (const FitRow& r : rows) {
+            const Cubic bs = bernstein(r.s), bt = bernstein(r.t);
+            Eigen::VectorXd phi(16);
+            for (int i = 0; i < 16; ++i)
+                phi[i] = bs[i / 4] * bt[i % 4];
+            const bool free = r.normal == Vec3{};
+            if (!free)
+                add(r.piece, phi, r.normal, dot(r.normal, r.residual),
+                    r.weight * (1.0 - problem.mu));
+            for (const Vec3& axis : axes)
+                add(r.piece, phi, axis, dot(axis, r.residual),
+                    r.weight * (free ? 1.0 : problem.mu));
+        }
+        for (Index p = 0; p < reduced->piece_count(); ++p)
+            for (int e = 0; e < 13; ++e) {
+                const Eigen::VectorXd row = thin_plate_rows().row(e);
+                Vec3 now;
+                for (Index c = 0; c < 16; ++c)
+                    now += row[c] * bezier[bezier_index(p, c)];
+                for (const Vec3& axis : axes)
+                    add(p, row, axis, -dot(axis, now), fairness[p / 16]);
+            }
+        return {matrix, right};
+    }
+
+    double distance_to_dense(const std::vector<Vec3>& move) const
+    {
+        const auto [matrix, right] = dense();
+        const Eigen::VectorXd x = matrix.ldlt().solve(right);
+        double largest = 0.0;
+        for (Index i = 0; i < reduced->free_count(); ++i)
+            largest =
+                std::fmax(largest, norm(move[i] - Vec3{x[3 * i], x[3 * i + 1], x[3 * i + 2]}));
+        return largest;
+    }
+};
+
+TEST(NormalSystem, point_rows_give_the_dense_least_squares_solution)
+{
+    const RandomRound round(1.0);
+    NormalSystem system(*round.reduced);
+    const auto solution = system.solve(round.problem, any_condition, Context());
+    ASSERT_TRUE(solution.ok);
+    EXPECT_LT(round.distance_to_dense(solution.move), 1e-9);
+}
+
+TEST(NormalSystem, tangent_rows_give_the_dense_least_squares_solution)
+{
+    const RandomRound round(0.01);
+    NormalSystem system(*round.reduced);
+    const auto solution = system.solve(round.problem, any_condition, Context());
+    ASSERT_TRUE(solution.ok);
+    EXPECT_LT(round.distance_to_dense(solution.move), 1e-8);
+}
+
+TEST(NormalSystem, an_old_factor_still_leads_to_the_solution)
+{
+    const RandomRound round(0.1);
+    NormalSystem system(*round.reduced);
+    RoundProblem before = round.problem;
+    for (const double mu : {1.0, 0.3}) {
+        before.mu = mu;
+        ASSERT_TRUE(system.solve(before, any_condition, Context()).ok);
+    }
+    const auto solution = system.solve(round.problem, any_condition, Context());
+    ASSERT_TRUE(solution.ok);
+    // Conjugate gradients stop at 1e-4 of the step; the moves are of order one.
+    EXPECT_LT(round.distance_to_dense(solution.move), 1e-3);
+}
+
+TEST(NormalSystem, reports_the_condition_within_a_factor_of_two)
+{
+    const RandomRound round(1.0);
+    NormalSystem system(*round.reduced);
+    const auto solution = system.solve(round.problem, any_condition, Context());
+    Eigen::MatrixXd normal = round.dense().first;
+    const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().cwiseInverse();
+    normal = scale.asDiagonal() * normal * scale.asDiagonal();
+    const Eigen::VectorXd values =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(normal).eigenvalues();
+    const double exact = values[values.size() - 1] / values[0];
+    EXPECT_LE(solution.condition, exact * (1.0 + 1e-9));
+    EXPECT_GE(solution.condition, 0.5 * exact);
+}
+
+TEST(NormalSystem, refuses_to_solve_above_the_condition_limit)
+{
+    const RandomRound round(1.0), coupled(0.1);
+    NormalSystem system(*round.reduced);
+    EXPECT_FALSE(system.solve(round.problem, 1.5, Context()).ok);
+    EXPECT_FALSE(system.solve(coupled.problem, 1.5, Context()).ok);
+}
+
+TEST(NormalSystem, has_the_same_bytes_for_any_number_of_threads)
+{
+    for (const double mu : {1.0, 0.01}) {
+        const RandomRound round(mu);
+        Context one, many;
+        one.threads = 1;
+        many.threads = 8;
+        NormalSystem a(*round.reduced), b(*round.reduced);
+        const auto x = a.solve(round.problem, any_condition, one);
+        const auto y = b.solve(round.problem, any_condition, many);
+        ASSERT_TRUE(x.ok && y.ok);
+        EXPECT_EQ(x.move, y.move);
+    }
+}
+
+TEST(StackedRows, agree_with_the_normal_equations)
+{
+    // With 20 rows a piece the dense compression is used, with 3 it is not.
+    for (const int rows : {3, 20}) {
+        const RandomRound round(1.0, rows);
+        const auto solution = solve_stacked_rows(*round.reduced, round.problem, Context());
+        ASSERT_TRUE(solution.ok);
+        EXPECT_LT(round.distance_to_dense(solution.move), 1e-8);
+    }
+}
+
+TEST(StackedRows, solve_what_the_normal_equations_cannot)
+{
+    // Only four of the quads have rows and there is no fairness, so most unknowns are free. The
+    // rows are made from a known move, so a solution leaves nothing.
+    RandomRound round(1.0, 20);
+    round.fairness.assign(round.fairness.size(), 0.0);
+    std::vector<Vec3> known(round.reduced->free_count());
+    for (std::size_t i = 0; i < known.size(); ++i)
+        known[i] = {std::sin(1.0 * i), std::sin(2.0 * i), std::sin(3.0 * i)};
+    const auto surface_move = [&](const FitRow& r, const std::vector<Vec3>& move) {
+        const Cubic bs = bernstein(r.s), bt = bernstein(r.t);
+        const Index k = round.reduced->piece_size(r.piece);
+        Vec3 sum;
+        for (Index c = 0; c < 16; ++c)
+            for (Index i = 0; i < k; ++i)
+                sum += bs[c / 4] * bt[c % 4] * round.reduced->piece_weights(r.piece)[k * c + i] *
+                       move[round.reduced->piece_unknowns(r.piece)[i]];
+        return sum;
+    };
+    round.rows.erase(std::remove_if(round.rows.begin(), round.rows.end(),
+                                    [](const FitRow& r) { return r.piece >= 4 * 16; }),
+                     round.rows.end());
+    round.groups = group_by_piece(round.rows, round.reduced->piece_count());
+    for (FitRow& r : round.rows)
+        r.residual = surface_move(r, known);
+    NormalSystem system(*round.reduced);
+    EXPECT_FALSE(system.solve(round.problem, 1e10, Context()).ok);
+    const auto solution = solve_stacked_rows(*round.reduced, round.problem, Context());
+    ASSERT_TRUE(solution.ok);
+    for (const FitRow& r : round.rows)
+        EXPECT_LT(norm(surface_move(r, solution.move) - r.residual), 1e-10);
+}
+
+} // namespace
+} // namespace bot2nurbs
