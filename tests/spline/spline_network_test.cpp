@@ -190,9 +190,13 @@ TEST(SplineNetwork, no_unknown_is_redundant)
             domains.push_back(d);
     }
     for (const Domain& d : domains) {
-        const SplineNetwork network = network_of(d);
-        EXPECT_EQ(rank_of(network), network.unknown_count - network.constraints.row_count())
-            << d.name;
+        for (SplineScheme scheme : {SplineScheme::peters, SplineScheme::eck_hoppe}) {
+            const auto network = build_spline_network(d.complex, scheme);
+            if (!network)
+                continue; // the masks of 1996 on an open or creased domain
+            EXPECT_EQ(rank_of(*network), network->unknown_count - network->constraints.row_count())
+                << d.name;
+        }
     }
 }
 
