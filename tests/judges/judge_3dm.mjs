@@ -5,7 +5,7 @@
 //
 // JSON is a file { "objects": [ { "points": [ { "face", "u", "v", "position": [x, y, z] } ] } ] } of
 // places on the faces and where they must be. Exit code: 0 read, 2 usage, 3 not readable.
-import { readFileSync } from 'node:fs';
+import { existsSync, readFileSync } from 'node:fs';
 import rhino3dm from 'rhino3dm';
 
 const usage = 'usage: node judge_3dm.mjs FILE [--points JSON]';
@@ -91,7 +91,7 @@ if (options === undefined) {
     process.exit(2);
 }
 const rhino = await rhino3dm();
-const bytes = readFileSync(options.file);
+const bytes = existsSync(options.file) ? readFileSync(options.file) : [];
 const doc = rhino.File3dm.fromByteArray(new Uint8Array(bytes));
 if (doc === null) {
     console.log(JSON.stringify({ readable: false }));

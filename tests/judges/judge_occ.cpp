@@ -177,7 +177,7 @@ void judge(const TopoDS_Shape& shape, const Options& o, nlohmann::json& report)
         failed.push_back("volume");
 
     Bnd_Box box;
-    BRepBndLib::AddOptimal(shape, box, false, false);
+    BRepBndLib::Add(shape, box, false);
     const double diagonal = std::sqrt(box.SquareExtent());
     const double tolerance = largest_tolerance(shape);
     // Open CASCADE knows no tolerance below its confusion distance.
