@@ -192,6 +192,32 @@ TEST(DomainSamples, normals_keep_to_the_sides_of_a_sharp_shape)
     }
 }
 
+TEST(DomainSamples, follow_computed_charts_over_a_refined_carrier)
+{
+    HandDomain hand = with_refined_carrier(torus_askew(2, 2));
+    Context context;
+    auto charts = compute_charts(hand.mesh, hand.domain, context);
+    ASSERT_TRUE(charts.ok()) << charts.error().message;
+    hand.charts = *charts;
+    const SurfaceSampleSet set = sampled(hand);
+    EXPECT_EQ(set.size(), hand.charts.size() * 144 + hand.mesh.vertex_count());
+    double total = 0.0;
+    std::vector<int> per_piece(16 * hand.charts.size(), 0);
+    for (std::size_t i = 0; i < set.size(); ++i) {
+        const DomainPoint& d = set.domain[i];
+        total += set.weights[i];
+        EXPECT_EQ(set.positions[i], hand.mesh.at(set.source[i]));
+        ++per_piece[16 * d.quad + 4 * std::min(3, int(4 * d.u)) + std::min(3, int(4 * d.v))];
+        // The chart leads back to the same place.
+        const ChartLocator locator(hand.charts[d.quad]);
+        const SourcePoint there = source_point(hand.charts[d.quad], locator.locate({d.u, d.v}));
+        EXPECT_LT(norm(hand.mesh.at(there) - set.positions[i]), 1e-12);
+    }
+    for (const int count : per_piece)
+        EXPECT_GE(count, 9);
+    EXPECT_NEAR(total, mesh_area(hand.mesh), 1e-7 * total);
+}
+
 TEST(DomainSamples, are_the_same_for_any_thread_count)
 {
     HandDomain hand = genus2_voxels(0, 8);
