@@ -3,6 +3,7 @@
 
 #include "io/mesh_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cstdint>
 #include <string_view>
+#include <system_error>
+#include <type_traits>
 
 namespace bot2nurbs {
 
