@@ -94,7 +94,7 @@ Result<std::vector<QuadChart>> compute_charts(const ManifoldMesh& source, const 
                     failure[q] = "its region is not a disk";
                     continue;
                 }
-                const auto map = map_to_polygon(domain.carrier.mesh, *overlay, unit_square());
+                const auto map = map_to_polygon(*overlay, unit_square());
                 if (!map) {
                     failure[q] = "its region cannot be mapped to the square without folds";
                     continue;

@@ -87,7 +87,7 @@ Result<PatchComplex> build_base_complex(const Tiles& tiles, Context& context)
         const std::optional<Overlay> tile = builder.tile(tiles.labels(), own, neighbour);
         if (!tile)
             return failed("is not a disk");
-        const auto map = map_to_polygon(mesh, *tile, regular_polygon(tile->side_count()));
+        const auto map = map_to_polygon(*tile, regular_polygon(tile->side_count()));
         if (!map)
             return failed("cannot be mapped to a polygon");
         Index center = invalid_index;

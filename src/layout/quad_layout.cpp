@@ -290,7 +290,7 @@ void Improver::relocate_vertices()
         const auto overlay = complex_.overlay(*border);
         if (!overlay)
             continue;
-        const auto map = map_to_polygon(complex_.mesh(), *overlay, regular_polygon(2 * n));
+        const auto map = map_to_polygon(*overlay, regular_polygon(2 * n));
         if (!map)
             continue;
         Index center = invalid_index;
@@ -346,7 +346,7 @@ double face_distortion(PatchComplex& complex, const std::vector<Side>& border)
     const auto overlay = complex.overlay(border);
     if (!overlay)
         return infinity;
-    const auto map = map_to_polygon(complex.mesh(), *overlay, unit_square());
+    const auto map = map_to_polygon(*overlay, unit_square());
     return map ? measure_distortion(*overlay, map->uv).dirichlet : infinity;
 }
 

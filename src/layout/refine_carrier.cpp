@@ -88,7 +88,7 @@ private:
         carrier_.face_source.push_back(carrier_.face_source[f]);
         twin_.resize(twin_.size() + 3, invalid_index);
         join(3 * added + 1, outer);
-        push(3 * added + 1); // Its entry in the queue names bc.
+        push(3 * added + 1);     // Its entry in the queue names bc.
         join(bc, 3 * added + 2); // bc now runs from m to c.
         return 3 * added;
     }

@@ -166,29 +166,23 @@ bool is_injective(const Overlay& overlay, const std::vector<Vec2>& uv)
     return true;
 }
 
-std::optional<ConvexMap> map_to_polygon(const ManifoldMesh&, const Overlay& overlay,
-                                        const std::vector<Vec2>& corners)
+std::optional<ConvexMap> map_to_polygon(const Overlay& overlay, const std::vector<Vec2>& corners,
+                                        MapLevel first)
 {
-    ConvexMap map;
-    const std::vector<Vec2> border = place_border(overlay, corners);
-    const auto holds = [&](bool solved, MapLevel level) {
-        map.level = level;
-        return solved && is_injective(overlay, map.uv);
-    };
-    map.uv = border;
-    if (holds(solve_inner<double>(overlay, weighted_edges(overlay, true), map.uv),
-              MapLevel::harmonic))
-        return map;
-    const std::vector<Edge> uniform = weighted_edges(overlay, false);
-    map.uv = border;
-    if (holds(solve_inner<double>(overlay, uniform, map.uv), MapLevel::uniform))
-        return map;
     // What rounding of the solve, not of the result, destroyed comes back with more digits.
     using Extended = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<100>,
                                                    boost::multiprecision::et_off>;
-    map.uv = border;
-    if (holds(solve_inner<Extended>(overlay, uniform, map.uv), MapLevel::exact))
-        return map;
+    const std::vector<Vec2> border = place_border(overlay, corners);
+    for (const MapLevel level : {MapLevel::harmonic, MapLevel::uniform, MapLevel::exact}) {
+        if (level < first)
+            continue;
+        ConvexMap map{border, level};
+        const std::vector<Edge> edges = weighted_edges(overlay, level == MapLevel::harmonic);
+        const bool solved = level == MapLevel::exact ? solve_inner<Extended>(overlay, edges, map.uv)
+                                                     : solve_inner<double>(overlay, edges, map.uv);
+        if (solved && is_injective(overlay, map.uv))
+            return map;
+    }
     return std::nullopt;
 }
 

@@ -29,8 +29,9 @@ std::vector<Vec2> unit_square();
 //! rounding folds a triangle; then uniform weights in extended precision. Injectivity is decided
 //! exactly for every triangle. \cite eck_1995, section 3, \cite tutte_1963 \cite floater_1997
 //! Empty when even that map has a triangle that is not positive after rounding to doubles.
-std::optional<ConvexMap> map_to_polygon(const ManifoldMesh& mesh, const Overlay& overlay,
-                                        const std::vector<Vec2>& corners);
+//! `first` is the level to begin with.
+std::optional<ConvexMap> map_to_polygon(const Overlay& overlay, const std::vector<Vec2>& corners,
+                                        MapLevel first = MapLevel::harmonic);
 
 //! True when every triangle is positively oriented, decided exactly.
 bool is_injective(const Overlay& overlay, const std::vector<Vec2>& uv);

@@ -243,8 +243,7 @@ std::optional<std::vector<SurfacePath>> retile(OverlayBuilder& builder,
     if (!overlay)
         return std::nullopt;
     const Index sides = overlay->side_count();
-    const auto map = map_to_polygon(builder.mesh(), *overlay,
-                                    sides == 4 ? unit_square() : regular_polygon(sides));
+    const auto map = map_to_polygon(*overlay, sides == 4 ? unit_square() : regular_polygon(sides));
     if (!map)
         return std::nullopt;
     Index center_vertex = invalid_index;

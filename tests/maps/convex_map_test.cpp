@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include "maps/convex_map.h"
+
+#include "core/predicates.h"
+#include "maps/patches.h"
+#include "mesh_fixtures.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace bot2nurbs::fixtures {
+namespace {
+
+// The disk of all faces that touch v, with the ring split into `sides` sides.
+std::optional<Overlay> star_of(const ManifoldMesh& mesh, Index v, std::size_t sides)
+{
+    std::vector<Index> ring;
+    Index h = mesh.halfedge_at(v);
+    const Index first = h;
+    do {
+        ring.push_back(mesh.to(h));
+        h = mesh.twin(ManifoldMesh::prev(h));
+    } while (h != first);
+    std::vector<SurfacePath> paths;
+    for (std::size_t s = 0; s < sides; ++s) {
+        std::vector<Index> side;
+        for (std::size_t i = s * ring.size() / sides; i <= (s + 1) * ring.size() / sides; ++i)
+            side.push_back(ring[i % ring.size()]);
+        paths.push_back(edge_path(side));
+    }
+    std::vector<PathSide> border;
+    for (const SurfacePath& p : paths)
+        border.push_back({&p, false});
+    return OverlayBuilder(mesh).disk(border);
+}
+
+// The n x n square patch of a mesh of a flat sheet folded into a box: border along mesh edges.
+Overlay flat_square(int n)
+{
+    // An overlay made directly: a grid on the unit square, border first, counter-clockwise.
+    Overlay overlay;
+    std::vector<std::vector<Index>> id(n + 1, std::vector<Index>(n + 1, invalid_index));
+    const auto add = [&](int i, int j) {
+        Overlay::Vertex v;
+        v.position = {static_cast<double>(i) / n, static_cast<double>(j) / n, 0.0};
+        id[i][j] = static_cast<Index>(overlay.vertices.size());
+        overlay.vertices.push_back(v);
+    };
+    for (int i = 0; i < n; ++i)
+        add(i, 0);
+    for (int j = 0; j < n; ++j)
+        add(n, j);
+    for (int i = n; i > 0; --i)
+        add(i, n);
+    for (int j = n; j > 0; --j)
+        add(0, j);
+    overlay.boundary_count = static_cast<Index>(overlay.vertices.size());
+    for (Index s = 0; s < 4; ++s)
+        overlay.corners.push_back(s * static_cast<Index>(n));
+    for (int i = 1; i < n; ++i)
+        for (int j = 1; j < n; ++j)
+            add(i, j);
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            overlay.triangles.push_back({id[i][j], id[i + 1][j], id[i + 1][j + 1]});
+            overlay.triangles.push_back({id[i][j], id[i + 1][j + 1], id[i][j + 1]});
+        }
+    overlay.face.assign(overlay.triangles.size(), 0);
+    return overlay;
+}
+
+TEST(ConvexMap, of_a_flat_square_has_the_least_energy_within_half_a_percent)
+{
+    Overlay overlay = flat_square(8);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> shift(-0.02, 0.02);
+    for (std::size_t v = overlay.boundary_count; v < overlay.vertices.size(); ++v) {
+        overlay.vertices[v].position.x += shift(random);
+        overlay.vertices[v].position.y += shift(random);
+    }
+    const auto map = map_to_polygon(overlay, unit_square());
+    ASSERT_TRUE(map);
+    EXPECT_EQ(map->level, MapLevel::harmonic);
+    // The identity is harmonic with energy one; only weights at their lower bound disturb it.
+    EXPECT_NEAR(measure_distortion(overlay, map->uv).dirichlet, 1.0, 5e-3);
+}
+
+TEST(ConvexMap, of_the_regular_grid_is_the_identity)
+{
+    const Overlay overlay = flat_square(7);
+    const auto map = map_to_polygon(overlay, unit_square(), MapLevel::uniform);
+    ASSERT_TRUE(map);
+    for (std::size_t v = 0; v < overlay.vertices.size(); ++v) {
+        EXPECT_NEAR(map->uv[v].x, overlay.vertices[v].position.x, 1e-14);
+        EXPECT_NEAR(map->uv[v].y, overlay.vertices[v].position.y, 1e-14);
+    }
+}
+
+TEST(ConvexMap, every_level_is_injective_on_every_star)
+{
+    for (const auto& [name, mesh, genus] : closed_meshes())
+        for (Index v = 0; v < mesh.vertex_count(); v += 1 + mesh.vertex_count() / 50) {
+            const auto overlay = star_of(mesh, v, 3);
+            ASSERT_TRUE(overlay) << name << " vertex " << v;
+            for (const MapLevel level : {MapLevel::harmonic, MapLevel::uniform, MapLevel::exact}) {
+                const auto map = map_to_polygon(*overlay, regular_polygon(3), level);
+                ASSERT_TRUE(map) << name << " vertex " << v;
+                EXPECT_EQ(map->level, level);
+                EXPECT_TRUE(is_injective(*overlay, map->uv));
+            }
+        }
+}
+
+TEST(ConvexMap, stays_injective_on_needles_a_million_times_longer_than_wide)
+{
+    Overlay overlay = flat_square(12);
+    for (auto& v : overlay.vertices)
+        v.position.y *= 1e-6;
+    const auto map = map_to_polygon(overlay, unit_square());
+    ASSERT_TRUE(map);
+    EXPECT_TRUE(is_injective(overlay, map->uv));
+}
+
+TEST(ConvexMap, falls_back_to_the_next_level_when_a_triangle_folds)
+{
+    // Ever smaller rings towards a corner: harmonic weights cannot place the last ones in doubles.
+    Overlay overlay = flat_square(10);
+    for (std::size_t v = overlay.boundary_count; v < overlay.vertices.size(); ++v) {
+        Vec3& p = overlay.vertices[v].position;
+        p = {std::pow(p.x, 40.0), std::pow(p.y, 40.0), 0.0};
+    }
+    const auto map = map_to_polygon(overlay, unit_square());
+    ASSERT_TRUE(map);
+    EXPECT_TRUE(is_injective(overlay, map->uv));
+    const auto exact = map_to_polygon(overlay, unit_square(), MapLevel::exact);
+    ASSERT_TRUE(exact);
+    EXPECT_EQ(exact->level, MapLevel::exact);
+}
+
+TEST(ConvexMap, a_folded_triangle_is_noticed)
+{
+    const Overlay overlay = flat_square(4);
+    auto map = map_to_polygon(overlay, unit_square());
+    ASSERT_TRUE(map);
+    map->uv.back() = {0.0, 0.0};
+    EXPECT_FALSE(is_injective(overlay, map->uv));
+}
+
+TEST(ConvexMap, sides_are_placed_by_arc_length_whichever_way_they_are_walked)
+{
+    const ManifoldMesh mesh = icosphere(2);
+    const auto overlay = star_of(mesh, 0, 3);
+    ASSERT_TRUE(overlay);
+    const auto map = map_to_polygon(*overlay, regular_polygon(3));
+    ASSERT_TRUE(map);
+    const auto corners = regular_polygon(3);
+    for (Index s = 0; s < 3; ++s)
+        EXPECT_TRUE(map->uv[overlay->corners[s]] == corners[s]);
+}
+
+TEST(ConvexMap, distortion_of_a_rectangle_is_the_mean_of_its_aspect_and_inverse)
+{
+    Overlay overlay = flat_square(6);
+    for (auto& v : overlay.vertices)
+        v.position.x *= 4.0;
+    const auto map = map_to_polygon(overlay, unit_square(), MapLevel::uniform);
+    ASSERT_TRUE(map);
+    EXPECT_NEAR(measure_distortion(overlay, map->uv).dirichlet, 0.5 * (4.0 + 0.25), 1e-12);
+}
+
+} // namespace
+} // namespace bot2nurbs::fixtures
