@@ -78,8 +78,8 @@ double speed_at(const SurfacePoint& s, double mean)
 
 FitLoop::FitLoop(const SplineNetwork& network, const ReducedNetwork& reduced,
                  const FitOptions& options, Context& context)
-    : network_(network), reduced_(reduced), options_(options), context_(context), system_(reduced),
-      guard_(0, {}, {})
+    : network_(network), reduced_(reduced), options_(options), context_(context),
+      system_(reduced, context), guard_(0, {}, {})
 {
     // Each of the 27 multiplications of a 3 x 3 block product, half of them by symmetry.
     coupled_affordable_ = 0.5 * 27.0 * system_.factor_work() <= coupled_work_limit;
@@ -293,6 +293,8 @@ void FitLoop::record(const State& state, double mu, double start)
 
 Status FitLoop::run()
 {
+    if (context_.cancelled())
+        return Context::cancelled_error("fit");
     summary.unknowns = reduced_.free_count();
     summary.samples = static_cast<Index>(points.size());
     std::vector<double> count(network_.complex.quad_count(), 0.0);

@@ -73,7 +73,7 @@ Result<FitResult> fit_network(const SplineNetwork& network, SurfaceSampleSet& sa
     double weight_sum = 0.0;
     for (const double w : samples.weights)
         weight_sum += w;
-    auto reduced = ReducedNetwork::build(network);
+    auto reduced = ReducedNetwork::build(network, context);
     if (!reduced)
         return reduced.error();
 

@@ -124,7 +124,8 @@ RowsByPiece group_by_piece(const std::vector<FitRow>& rows, Index piece_count)
     return groups;
 }
 
-NormalSystem::NormalSystem(const ReducedNetwork& network) : network_(network)
+NormalSystem::NormalSystem(const ReducedNetwork& network, const Context& context)
+    : network_(network)
 {
     const int n = static_cast<int>(network.free_count());
     std::vector<std::vector<int>> neighbours(n);
@@ -134,6 +135,8 @@ NormalSystem::NormalSystem(const ReducedNetwork& network) : network_(network)
             for (Index j = 0; j < k; ++j)
                 neighbours[u[i]].push_back(static_cast<int>(u[j]));
     }
+    if (context.cancelled())
+        return;
     std::vector<Eigen::Triplet<double, int>> entries;
     for (int i = 0; i < n; ++i) {
         std::vector<int>& list = neighbours[i];
@@ -143,6 +146,8 @@ NormalSystem::NormalSystem(const ReducedNetwork& network) : network_(network)
         for (const int j : list)
             entries.emplace_back(j, i, 1.0);
     }
+    if (context.cancelled())
+        return;
     ScaledFactor::Matrix pattern(n, n);
     pattern.setFromTriplets(entries.begin(), entries.end());
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
@@ -151,6 +156,8 @@ NormalSystem::NormalSystem(const ReducedNetwork& network) : network_(network)
     for (int i = 0; i < n; ++i)
         place_[order.indices()[i]] = i;
 
+    if (context.cancelled())
+        return;
     std::vector<std::vector<int>> upper(n);
     for (int i = 0; i < n; ++i)
         for (const int j : neighbours[i])
@@ -178,6 +185,8 @@ NormalSystem::NormalSystem(const ReducedNetwork& network) : network_(network)
         pair_offset_.push_back(slot_.size());
     }
 
+    if (context.cancelled())
+        return;
     // Column counts of the factor by the row-subtree walk, for the cost rule and reports.
     std::vector<int> parent(n, -1), mark(n, -1);
     std::vector<std::size_t> count(n, 1);
@@ -278,9 +287,9 @@ NormalSystem::Solution NormalSystem::solve_decoupled(double condition_limit, con
     }
     std::copy(value_.begin(), value_.end(), matrix.valuePtr());
     Solution solution;
-    if (!scalar_.factorize() || context.cancelled())
+    if (!scalar_.factorize(context) || context.cancelled())
         return solution;
-    solution.condition = scalar_.condition();
+    solution.condition = scalar_.condition(context);
     if (!(solution.condition <= condition_limit)) {
         scalar_.drop_factor();
         return solution;
@@ -353,9 +362,9 @@ NormalSystem::Solution NormalSystem::solve_coupled(double condition_limit, const
         solution.condition = 0.0;
     }
     if (!x && !context.cancelled()) {
-        if (!coupled_.factorize() || context.cancelled())
+        if (!coupled_.factorize(context) || context.cancelled())
             return solution;
-        solution.condition = coupled_condition_ = coupled_.condition();
+        solution.condition = coupled_condition_ = coupled_.condition(context);
         if (!(solution.condition <= condition_limit)) {
             coupled_.drop_factor();
             return solution;

@@ -44,7 +44,8 @@ struct RoundProblem {
 //! matrix; otherwise 3 x 3 blocks couple them in the same pattern. Cost linear in rows and pieces.
 class NormalSystem {
 public:
-    explicit NormalSystem(const ReducedNetwork& network);
+    //! Not to be used when the context was cancelled meanwhile.
+    NormalSystem(const ReducedNetwork& network, const Context& context);
 
     Index size() const { return static_cast<Index>(place_.size()); }
     //! Entries of the scalar factor (a 3 x 3 coupled one has nine times as many).

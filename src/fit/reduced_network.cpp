@@ -22,7 +22,7 @@ Error bad_constraint(const char* what, Index row)
 
 } // namespace
 
-Result<ReducedNetwork> ReducedNetwork::build(const SplineNetwork& network)
+Result<ReducedNetwork> ReducedNetwork::build(const SplineNetwork& network, const Context& context)
 {
     const Index n = network.unknown_count;
     const SparseRows& constraints = network.constraints;
@@ -75,6 +75,8 @@ Result<ReducedNetwork> ReducedNetwork::build(const SplineNetwork& network)
     std::vector<Index> columns;
     const Index quads = network.complex.quad_count();
     for (Index p = 0; p < quads * pieces_per_quad; ++p) {
+        if (context.cancelled())
+            return Context::cancelled_error("fit");
         const Index q = p / pieces_per_quad, a = p % pieces_per_quad / 4, b = p % 4;
         columns.clear();
         for (Index c = 0; c < coefficients; ++c) {

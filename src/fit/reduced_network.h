@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "bot2nurbs/context.h"
 #include "bot2nurbs/spline_network.h"
 
 #include <vector>
@@ -15,8 +16,9 @@ namespace bot2nurbs {
 class ReducedNetwork {
 public:
     //! Eliminates the largest coefficient of every constraint row (ties: the smallest unknown).
-    //! Errors: fit_failed when two rows share an unknown or a row is zero. Cost O(stencil entries).
-    static Result<ReducedNetwork> build(const SplineNetwork& network);
+    //! Errors: fit_failed when two rows share an unknown or a row is zero, cancelled. Cost
+    //! O(stencil entries).
+    static Result<ReducedNetwork> build(const SplineNetwork& network, const Context& context);
 
     static constexpr Index pieces_per_quad = 16;
     static constexpr int coefficients = 16;

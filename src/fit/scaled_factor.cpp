@@ -26,7 +26,7 @@ Eigen::VectorXd start_vector(Eigen::Index n)
 
 } // namespace
 
-bool ScaledFactor::factorize()
+bool ScaledFactor::factorize(const Context& context)
 {
     has_factor_ = false;
     const Eigen::Index n = matrix_.cols();
@@ -39,42 +39,56 @@ bool ScaledFactor::factorize()
         scale_[j] = 1.0 / std::sqrt(d);
     }
     if (!analysed_)
-        scaled_ = matrix_;
+        polled_ = matrix_.cast<PolledDouble>();
     for (Eigen::Index j = 0; j < n; ++j)
         for (int e = matrix_.outerIndexPtr()[j]; e < matrix_.outerIndexPtr()[j + 1]; ++e)
-            scaled_.valuePtr()[e] =
+            polled_.valuePtr()[e] =
                 matrix_.valuePtr()[e] * scale_[matrix_.innerIndexPtr()[e]] * scale_[j];
     if (!analysed_) {
-        factor_.analyzePattern(scaled_);
+        factor_.analyzePattern(polled_);
         analysed_ = true;
     }
-    factor_.factorize(scaled_);
-    has_factor_ = factor_.info() == Eigen::Success && factor_.vectorD().minCoeff() > 0.0;
-    return has_factor_;
+    const PolledDouble::Scope scope(context);
+    factor_.factorize(polled_);
+    if (factor_.info() != Eigen::Success || context.cancelled())
+        return false;
+    const auto& pivots = factor_.vectorD();
+    for (Eigen::Index i = 0; i < n; ++i)
+        if (!(pivots[i] > 0.0))
+            return false;
+    has_factor_ = true;
+    return true;
+}
+
+Eigen::VectorXd ScaledFactor::solve_scaled(const Eigen::VectorXd& right) const
+{
+    const Eigen::Matrix<PolledDouble, Eigen::Dynamic, 1> polled = right.cast<PolledDouble>();
+    const Eigen::Matrix<PolledDouble, Eigen::Dynamic, 1> x = factor_.solve(polled);
+    return x.cast<double>();
 }
 
 Eigen::VectorXd ScaledFactor::solve(const Eigen::VectorXd& right) const
 {
-    const Eigen::VectorXd scaled = scale_.cwiseProduct(right);
-    return scale_.cwiseProduct(factor_.solve(scaled));
+    return scale_.cwiseProduct(solve_scaled(scale_.cwiseProduct(right)));
 }
 
-double ScaledFactor::condition() const
+double ScaledFactor::condition(const Context& context) const
 {
-    Eigen::VectorXd v = start_vector(scaled_.cols());
+    Eigen::VectorXd v = start_vector(matrix_.cols());
     double largest = 0.0, inverse_largest = 0.0;
-    for (int i = 0; i < power_iterations; ++i) {
-        const Eigen::VectorXd w = scaled_.selfadjointView<Eigen::Upper>() * v;
+    for (int i = 0; i < power_iterations && !context.cancelled(); ++i) {
+        const Eigen::VectorXd w =
+            scale_.cwiseProduct(matrix_.selfadjointView<Eigen::Upper>() * scale_.cwiseProduct(v));
         largest = w.norm();
         v = w / largest;
     }
-    v = start_vector(scaled_.cols());
-    for (int i = 0; i < power_iterations; ++i) {
-        const Eigen::VectorXd w = factor_.solve(v);
+    v = start_vector(matrix_.cols());
+    for (int i = 0; i < power_iterations && !context.cancelled(); ++i) {
+        const Eigen::VectorXd w = solve_scaled(v);
         inverse_largest = w.norm();
         v = w / inverse_largest;
     }
-    return largest * inverse_largest;
+    return context.cancelled() ? INFINITY : largest * inverse_largest;
 }
 
 } // namespace bot2nurbs

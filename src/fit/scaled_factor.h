@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "fit/polled_double.h"
+
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
 #include <optional>
@@ -18,9 +20,9 @@ public:
     Matrix& matrix() { return matrix_; }
     const Matrix& matrix() const { return matrix_; }
 
-    //! Scales and factorises `matrix()`. \return false when it is not positive definite to
-    //! rounding; there is then no factor.
-    bool factorize();
+    //! Scales and factorises `matrix()`. \return false when it is not positive definite to rounding
+    //! or the context was cancelled, which is polled at every column; there is then no factor.
+    bool factorize(const Context& context);
     bool has_factor() const { return has_factor_; }
     //! Forgets a factor that is not to be trusted.
     void drop_factor() { has_factor_ = false; }
@@ -28,12 +30,18 @@ public:
     Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
     //! Estimate, from below, of the 2-norm condition of the scaled matrix, by power iteration on it
     //! and on its inverse. \pre `factorize` was the last change of the matrix
-    double condition() const;
+    //! Infinite when the context was cancelled.
+    double condition(const Context& context) const;
 
 private:
-    Matrix matrix_, scaled_;
+    Matrix matrix_;
     Eigen::VectorXd scale_;
-    Eigen::SimplicialLDLT<Matrix, Eigen::Upper, Eigen::NaturalOrdering<int>> factor_;
+    using PolledMatrix = Eigen::SparseMatrix<PolledDouble, Eigen::ColMajor, int>;
+
+    Eigen::VectorXd solve_scaled(const Eigen::VectorXd& right) const;
+
+    PolledMatrix polled_;
+    Eigen::SimplicialLDLT<PolledMatrix, Eigen::Upper, Eigen::NaturalOrdering<int>> factor_;
     bool analysed_ = false, has_factor_ = false;
 };
 

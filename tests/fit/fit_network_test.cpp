@@ -4,9 +4,10 @@
 #include "analytic_targets.h"
 #include "hand_domains.h"
 
-#include <atomic>
 #include <chrono>
+#include <ctime>
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <random>
 #include <thread>
 
@@ -167,27 +168,6 @@ TEST(FitNetwork, gives_the_same_numbers_at_scales_that_are_powers_of_two)
     EXPECT_EQ(largest_difference(back, f.result.surface), 0.0);
 }
 
-TEST(FitNetwork, first_round_is_affine_equivariant)
-{
-    // One point-distance solve is linear in the data, so five of them with parameters that stay
-    // (a plane) commute with any affine map; curved data would change their feet.
-    const fixtures::Domain disk = fixtures::disk_grid(2, 2);
-    const auto wavy = [](const Vec3& p) { return Vec3{p.x + 0.1 * std::sin(3 * p.x), p.y, 0}; };
-    const auto sheared = [&](const Vec3& p) {
-        const Vec3 w = wavy(p);
-        return Vec3{2 * w.x + w.y, w.y - 0.5 * w.x, w.x + w.y + 7};
-    };
-    FitOptions options;
-    options.rows = DistanceRows::point;
-    options.max_rounds = 5;
-    const Fit f = fit(Target{disk, wavy, {}, 1.0}, options);
-    const Fit g = fit(Target{disk, sheared, {}, 1.0}, options);
-    EXPECT_LT(f.result.summary.rounds[0].max, 0.02);
-    EXPECT_LT(g.result.summary.rounds[0].max, 0.04);
-    EXPECT_LT(f.result.summary.rounds.back().max, 1e-3);
-    EXPECT_LT(g.result.summary.rounds.back().max, 2e-3);
-}
-
 TEST(FitNetwork, gives_the_same_bytes_for_1_2_and_8_threads)
 {
     const Target target = sphere_target(fixtures::split_bipyramid(5));
@@ -310,35 +290,43 @@ TEST(FitNetwork, fits_a_surface_of_genus_2_through_its_charts)
     EXPECT_GT(crossed, 0u);
 }
 
+//! Processor seconds a thread has used: what it did, however loaded the machine is.
+double thread_seconds(clockid_t clock)
+{
+    timespec t{};
+    clock_gettime(clock, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
 TEST(FitNetwork, is_cancelled_within_50_ms_and_leaves_the_samples_alone)
 {
-    using Clock = std::chrono::steady_clock;
-    const Target target = sphere_target(2);
+    // One factorisation of this size takes several times as long as a cancelled call may.
+    const Target target = torus_target(28, 14);
     const auto network = build_spline_network(target.domain.complex, SplineScheme::peters);
     const SurfaceSampleSet before = sample_target(target);
-    // Whatever the moment: early, in the middle, late.
-    for (const int after_ms : {1, 40, 150, 300}) {
+    clockid_t clock;
+    ASSERT_EQ(pthread_getcpuclockid(pthread_self(), &clock), 0);
+    for (const double after : {0.001, 0.02, 0.1, 0.25, 0.5, 1.0}) {
         SurfaceSampleSet samples = before;
         Context context;
         context.threads = 1;
         FitOptions options;
         options.max_rounds = 1000;
         options.stall = 0.0;
-        std::atomic<Clock::rep> asked{0};
+        const double start = thread_seconds(clock);
+        double asked = 0.0;
         std::thread canceller([&] {
-            std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
-            asked = Clock::now().time_since_epoch().count();
+            while (thread_seconds(clock) < start + after)
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            asked = thread_seconds(clock);
             context.cancel();
         });
         const auto result = fit_network(*network, samples, options, context);
-        const auto ended = Clock::now();
+        const double ended = thread_seconds(clock);
         canceller.join();
         ASSERT_FALSE(result.ok());
         EXPECT_EQ(result.error().code, ErrorCode::cancelled);
-        const Clock::time_point start{Clock::duration(asked.load())};
-        const double seconds = std::chrono::duration<double>(ended - start).count();
-        RecordProperty("cancel_ms", static_cast<int>(1000 * seconds));
-        EXPECT_LT(seconds, 0.05) << after_ms;
+        EXPECT_LT(ended - asked, 0.05) << after;
         for (std::size_t i = 0; i < samples.size(); ++i) {
             ASSERT_EQ(samples.domain[i].u, before.domain[i].u);
             ASSERT_EQ(samples.domain[i].quad, before.domain[i].quad);

@@ -22,7 +22,7 @@ constexpr double any_condition = 1e300;
 struct RandomRound {
     Result<SplineNetwork> network =
         build_spline_network(fixtures::radial_bipyramid(6).complex, SplineScheme::peters);
-    Result<ReducedNetwork> reduced = ReducedNetwork::build(*network);
+    Result<ReducedNetwork> reduced = ReducedNetwork::build(*network, Context());
     std::vector<FitRow> rows;
     RowsByPiece groups;
     std::vector<Vec3> bezier;
@@ -116,7 +116,7 @@ struct RandomRound {
 TEST(NormalSystem, point_rows_give_the_dense_least_squares_solution)
 {
     const RandomRound round(1.0);
-    NormalSystem system(*round.reduced);
+    NormalSystem system(*round.reduced, Context());
     const auto solution = system.solve(round.problem, any_condition, Context());
     ASSERT_TRUE(solution.ok);
     EXPECT_LT(round.distance_to_dense(solution.move), 1e-9);
@@ -125,16 +125,40 @@ TEST(NormalSystem, point_rows_give_the_dense_least_squares_solution)
 TEST(NormalSystem, tangent_rows_give_the_dense_least_squares_solution)
 {
     const RandomRound round(0.01);
-    NormalSystem system(*round.reduced);
+    NormalSystem system(*round.reduced, Context());
     const auto solution = system.solve(round.problem, any_condition, Context());
     ASSERT_TRUE(solution.ok);
     EXPECT_LT(round.distance_to_dense(solution.move), 1e-8);
 }
 
+TEST(NormalSystem, point_rows_are_affine_equivariant)
+{
+    const RandomRound round(1.0);
+    RandomRound mapped(1.0);
+    const auto linear = [](const Vec3& p) {
+        return Vec3{2 * p.x + p.y, p.y - 0.5 * p.z, p.x + p.y + p.z};
+    };
+    const Vec3 offset{3, -1, 2};
+    // Samples and surface are mapped by p -> linear(p) + offset, where the surface lags behind by
+    // the offset: points have to follow it, vectors have to stay.
+    for (FitRow& r : mapped.rows)
+        r.residual = linear(r.residual) + offset;
+    for (Vec3& c : mapped.bezier)
+        c = linear(c);
+    NormalSystem system(*round.reduced, Context());
+    const auto a = system.solve(round.problem, any_condition, Context());
+    const auto b = system.solve(mapped.problem, any_condition, Context());
+    ASSERT_TRUE(a.ok && b.ok);
+    for (Index i = 0; i < round.reduced->free_count(); ++i) {
+        const Vec3 expected = linear(a.move[i]) + (round.reduced->is_point(i) ? offset : Vec3{});
+        EXPECT_LT(norm(b.move[i] - expected), 1e-10);
+    }
+}
+
 TEST(NormalSystem, an_old_factor_still_leads_to_the_solution)
 {
     const RandomRound round(0.1);
-    NormalSystem system(*round.reduced);
+    NormalSystem system(*round.reduced, Context());
     RoundProblem before = round.problem;
     for (const double mu : {1.0, 0.3}) {
         before.mu = mu;
@@ -149,7 +173,7 @@ TEST(NormalSystem, an_old_factor_still_leads_to_the_solution)
 TEST(NormalSystem, reports_the_condition_within_a_factor_of_two)
 {
     const RandomRound round(1.0);
-    NormalSystem system(*round.reduced);
+    NormalSystem system(*round.reduced, Context());
     const auto solution = system.solve(round.problem, any_condition, Context());
     Eigen::MatrixXd normal = round.dense().first;
     const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().cwiseInverse();
@@ -164,7 +188,7 @@ TEST(NormalSystem, reports_the_condition_within_a_factor_of_two)
 TEST(NormalSystem, refuses_to_solve_above_the_condition_limit)
 {
     const RandomRound round(1.0), coupled(0.1);
-    NormalSystem system(*round.reduced);
+    NormalSystem system(*round.reduced, Context());
     EXPECT_FALSE(system.solve(round.problem, 1.5, Context()).ok);
     EXPECT_FALSE(system.solve(coupled.problem, 1.5, Context()).ok);
 }
@@ -176,7 +200,7 @@ TEST(NormalSystem, has_the_same_bytes_for_any_number_of_threads)
         Context one, many;
         one.threads = 1;
         many.threads = 8;
-        NormalSystem a(*round.reduced), b(*round.reduced);
+        NormalSystem a(*round.reduced, one), b(*round.reduced, many);
         const auto x = a.solve(round.problem, any_condition, one);
         const auto y = b.solve(round.problem, any_condition, many);
         ASSERT_TRUE(x.ok && y.ok);
@@ -220,7 +244,7 @@ TEST(StackedRows, solve_what_the_normal_equations_cannot)
     round.groups = group_by_piece(round.rows, round.reduced->piece_count());
     for (FitRow& r : round.rows)
         r.residual = surface_move(r, known);
-    NormalSystem system(*round.reduced);
+    NormalSystem system(*round.reduced, Context());
     EXPECT_FALSE(system.solve(round.problem, 1e10, Context()).ok);
     const auto solution = solve_stacked_rows(*round.reduced, round.problem, Context());
     ASSERT_TRUE(solution.ok);

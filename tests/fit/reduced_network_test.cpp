@@ -39,7 +39,7 @@ TEST(ReducedNetwork, satisfies_the_constraints_for_any_free_unknowns)
         for (const fixtures::Domain& d : fixtures::closed_domains()) {
             const auto network = build_spline_network(d.complex, scheme);
             ASSERT_TRUE(network.ok()) << d.name;
-            const auto reduced = ReducedNetwork::build(*network);
+            const auto reduced = ReducedNetwork::build(*network, Context());
             ASSERT_TRUE(reduced.ok()) << d.name;
             EXPECT_EQ(reduced->free_count() + network->constraints.row_count(),
                       network->unknown_count);
@@ -53,7 +53,7 @@ TEST(ReducedNetwork, pieces_give_the_coefficients_of_the_surface)
     for (const fixtures::Domain& d : {fixtures::genus2(), fixtures::radial_bipyramid(6)}) {
         const auto network = build_spline_network(d.complex, SplineScheme::peters);
         ASSERT_TRUE(network.ok());
-        const auto reduced = ReducedNetwork::build(*network);
+        const auto reduced = ReducedNetwork::build(*network, Context());
         ASSERT_TRUE(reduced.ok());
         const auto free = random_points(reduced->free_count(), 11);
         const SplineSurface surface(*network, reduced->expand(free));
@@ -79,7 +79,7 @@ TEST(ReducedNetwork, refuses_rows_that_share_an_unknown)
     c.column.push_back(c.column[0]);
     c.weight.push_back(1.0);
     c.offset.push_back(c.column.size());
-    const auto reduced = ReducedNetwork::build(*network);
+    const auto reduced = ReducedNetwork::build(*network, Context());
     ASSERT_FALSE(reduced.ok());
     EXPECT_EQ(reduced.error().code, ErrorCode::fit_failed);
     EXPECT_EQ(reduced.error().element, c.row_count() - 1);
