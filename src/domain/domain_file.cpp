@@ -198,7 +198,7 @@ JsonNode components_of(const JsonNode& root)
     return components;
 }
 
-std::string quoted_signatures(const JsonNode& components)
+std::string signatures(const JsonNode& components)
 {
     std::string list;
     for (std::size_t c = 0; c < components.size(); ++c)
@@ -208,9 +208,8 @@ std::string quoted_signatures(const JsonNode& components)
 
 [[noreturn]] void fail_stale(const JsonNode& components, const std::string& wanted)
 {
-    components.fail("the domain was made for another mesh (signature " +
-                        quoted_signatures(components) + "; the input has " + wanted +
-                        "): make it anew from this input",
+    components.fail("the domain was made for another mesh: it carries signature " +
+                        signatures(components) + ", the input has " + wanted,
                     ErrorCode::stale_domain);
 }
 
