@@ -9,6 +9,7 @@ namespace bot2nurbs {
 
 struct LayoutOptions {
     std::optional<Index> patches; //!< Wanted number of quads; by default chosen from the shape.
+    bool split_triangles = false; //!< Use the three-quads fallback in place of pairing.
     std::uint64_t seed = 0; //!< Reserved for tie-breaking experiments; results are deterministic.
 };
 

@@ -40,6 +40,9 @@ struct CarrierMesh {
 
     //! The source mesh as its own carrier.
     static CarrierMesh from_source(const ManifoldMesh& source);
+
+    //! Weights of a carrier vertex in a source face that it lies on.
+    std::array<double, 3> weights(const ManifoldMesh& source, Index vertex, Index face) const;
 };
 
 //! A quadrilateral domain K with its map to the source mesh M0: vertices are carrier vertices,

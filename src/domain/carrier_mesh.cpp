@@ -21,4 +21,19 @@ CarrierMesh CarrierMesh::from_source(const ManifoldMesh& source)
     return carrier;
 }
 
+std::array<double, 3> CarrierMesh::weights(const ManifoldMesh& source, Index vertex,
+                                           Index face) const
+{
+    const SourcePoint& point = vertex_source[vertex];
+    if (point.face == face)
+        return point.bary;
+    // It lies on an edge or vertex that both faces have: match corners.
+    std::array<double, 3> w{};
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k)
+            if (source.triangle(point.face)[i] == source.triangle(face)[k])
+                w[k] = point.bary[i];
+    return w;
+}
+
 } // namespace bot2nurbs

@@ -13,21 +13,6 @@ namespace bot2nurbs {
 
 namespace {
 
-// Weights of a carrier vertex in a source face it lies on.
-std::array<double, 3> source_weights(const ManifoldMesh& source, const SourcePoint& point,
-                                     Index face)
-{
-    if (point.face == face)
-        return point.bary;
-    // It lies on an edge or vertex that both faces have: match corners.
-    std::array<double, 3> w{};
-    for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k)
-            if (source.triangle(point.face)[i] == source.triangle(face)[k])
-                w[k] = point.bary[i];
-    return w;
-}
-
 QuadChart make_chart(const ManifoldMesh& source, const CarrierMesh& carrier, const Overlay& overlay,
                      const std::vector<Vec2>& uv)
 {
@@ -51,7 +36,7 @@ QuadChart make_chart(const ManifoldMesh& source, const CarrierMesh& carrier, con
             std::array<double, 3> sum{};
             for (int i = 0; i < 3; ++i) {
                 const Index v = carrier.mesh.triangle(f)[i];
-                const auto c = source_weights(source, carrier.vertex_source[v], face);
+                const auto c = carrier.weights(source, v, face);
                 for (int j = 0; j < 3; ++j)
                     sum[j] += w[i] * c[j];
             }

@@ -6,6 +6,7 @@
 #include "layout/quad_layout.h"
 #include "layout/refine_carrier.h"
 #include "layout/size_field.h"
+#include "layout/split_in_quads.h"
 
 #include <algorithm>
 #include <cmath>
@@ -161,16 +162,28 @@ Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOption
     if (!complex)
         return complex.error();
     straighten_triangles(*complex, context);
-    if (Status failed = pair_triangles(*complex, context))
-        return *failed;
-    improve_quads(*complex, summary.target_patches, context);
-    if (context.cancelled())
-        return Context::cancelled_error("layout");
-    Result<QuadDomain> domain = make_domain(*complex, std::move(carrier));
-    if (!domain)
-        return domain.error();
-    result.domain = std::move(*domain);
-    return result;
+    const auto finish = [&](PatchComplex& quads, CarrierMesh& on) -> Result<LayoutResult> {
+        improve_quads(quads, summary.target_patches, context);
+        if (context.cancelled())
+            return Context::cancelled_error("layout");
+        Result<QuadDomain> domain = make_domain(quads, std::move(on));
+        if (!domain)
+            return domain.error();
+        result.domain = std::move(*domain);
+        return std::move(result);
+    };
+    if (!options.split_triangles) {
+        const Result<bool> paired = pair_triangles(*complex, context);
+        if (!paired)
+            return paired.error();
+        if (*paired)
+            return finish(*complex, carrier);
+    }
+    summary.subdivided = true;
+    Result<SplitComplex> split = split_in_quads(*complex, source, carrier, context);
+    if (!split)
+        return split.error();
+    return finish(split->complex, *split->carrier);
 }
 
 } // namespace bot2nurbs

@@ -118,17 +118,37 @@ PatchComplex::border(const std::vector<Index>& faces) const
     return chain;
 }
 
-bool PatchComplex::replace(const std::vector<Index>& old_faces, const std::vector<Side>& border,
-                           const std::vector<std::pair<Index, Index>>& chords, Index center)
+std::optional<MappedDisk> PatchComplex::mapped(const std::vector<Side>& border)
 {
-    std::optional<std::vector<SurfacePath>> drawn;
-    if (chords.empty())
-        drawn.emplace();
-    else
-        drawn = retile(builder_, geometry(border), chords, center);
+    return map_disk(builder_, geometry(border));
+}
+
+bool PatchComplex::replace(const std::vector<Index>& old_faces, const std::vector<Side>& border,
+                           const std::vector<std::pair<Index, Index>>& chords)
+{
+    if (chords.empty()) {
+        exchange(old_faces, border, chords, {});
+        return true;
+    }
+    const std::optional<MappedDisk> disk = mapped(border);
+    return disk && replace(old_faces, border, chords, *disk);
+}
+
+bool PatchComplex::replace(const std::vector<Index>& old_faces, const std::vector<Side>& border,
+                           const std::vector<std::pair<Index, Index>>& chords,
+                           const MappedDisk& disk, Index center)
+{
+    auto drawn = retile(mesh(), disk, chords, center);
     if (!drawn)
         return false;
+    exchange(old_faces, border, chords, std::move(*drawn));
+    return true;
+}
 
+void PatchComplex::exchange(const std::vector<Index>& old_faces, const std::vector<Side>& border,
+                            const std::vector<std::pair<Index, Index>>& chords,
+                            std::vector<SurfacePath> drawn)
+{
     const auto inside = [&old_faces](Index f) {
         return std::find(old_faces.begin(), old_faces.end(), f) != old_faces.end();
     };
@@ -157,7 +177,7 @@ bool PatchComplex::replace(const std::vector<Index>& old_faces, const std::vecto
     std::vector<std::vector<End>> leaving(n + 1); // Index n: the centre.
     const auto slot = [n](Index corner) { return corner == invalid_index ? n : corner; };
     for (std::size_t i = 0; i < chords.size(); ++i) {
-        const Index p = add_path(std::move((*drawn)[i]));
+        const Index p = add_path(std::move(drawn[i]));
         leaving[slot(chords[i].first)].push_back({{p, false}, chords[i].second});
         leaving[slot(chords[i].second)].push_back({{p, true}, chords[i].first});
     }
@@ -214,7 +234,6 @@ bool PatchComplex::replace(const std::vector<Index>& old_faces, const std::vecto
         }
         add_face(std::move(sides));
     }
-    return true;
 }
 
 void PatchComplex::undo()

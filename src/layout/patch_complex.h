@@ -69,7 +69,11 @@ public:
     //! The new faces are the last ones of faces().
     //! \return false when the disk cannot be mapped; nothing is changed then.
     bool replace(const std::vector<Index>& old_faces, const std::vector<Side>& border,
-                 const std::vector<std::pair<Index, Index>>& chords, Index center = invalid_index);
+                 const std::vector<std::pair<Index, Index>>& chords);
+    //! The same in a disk that was mapped before.
+    bool replace(const std::vector<Index>& old_faces, const std::vector<Side>& border,
+                 const std::vector<std::pair<Index, Index>>& chords, const MappedDisk& disk,
+                 Index center = invalid_index);
     //! Number of faces the last replace() made.
     Index new_face_count() const
     {
@@ -84,6 +88,7 @@ public:
 
     std::optional<Overlay> overlay(Index face);
     std::optional<Overlay> overlay(const std::vector<Side>& border);
+    std::optional<MappedDisk> mapped(const std::vector<Side>& border);
 
     //! Drops dead faces and paths and numbers the rest anew, in order.
     void compact();
@@ -97,6 +102,9 @@ private:
     };
 
     std::vector<PathSide> geometry(const std::vector<Side>& sides) const;
+    void exchange(const std::vector<Index>& old_faces, const std::vector<Side>& border,
+                  const std::vector<std::pair<Index, Index>>& chords,
+                  std::vector<SurfacePath> drawn);
 
     OverlayBuilder builder_;
     std::vector<Face> faces_;

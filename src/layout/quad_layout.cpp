@@ -21,6 +21,9 @@ constexpr double bottleneck_slack = 1.3;
 // A change must lower the energy by this much, so that rounding does not make it cycle.
 constexpr double min_gain = 1e-3;
 constexpr int max_passes = 6;
+// While there are more than this factor times the wanted quads, one quad less is worth this much.
+constexpr double count_slack = 1.1;
+constexpr double surplus_credit = 1.5;
 // Largest valence a change may make: the masks grow fast beyond (facts on the masks' norms).
 constexpr int max_valence = 6;
 
@@ -37,6 +40,7 @@ public:
         : complex_(complex), min_quads_(min_quads), context_(context)
     {
         valence_.assign(complex.mesh().vertex_count(), 0);
+        vertex_tried_.assign(complex.mesh().vertex_count(), 0);
         for (const auto& p : complex.paths())
             if (p.alive)
                 ++valence_[p.geometry.a], ++valence_[p.geometry.b];
@@ -69,9 +73,9 @@ private:
         return distortion_[f];
     }
 
-    bool adjacent(Index a, const Side& at_a, Index b) const
+    // Whether an edge joins the start of a side to vertex b.
+    bool adjacent(const Side& at_a, Index b) const
     {
-        (void)a;
         for (const Side& s : complex_.star(at_a))
             if (complex_.end(s) == b)
                 return true;
@@ -82,7 +86,7 @@ private:
     // valence terms, already counted by the caller.
     bool attempt(const std::vector<Index>& faces, const std::vector<Side>& border,
                  const std::vector<std::pair<Index, Index>>& chords, double valence_change,
-                 Index center = invalid_index)
+                 const MappedDisk* disk = nullptr, Index center = invalid_index)
     {
         double before = 0.0, worst = 0.0;
         for (const Index f : faces) {
@@ -95,7 +99,8 @@ private:
         const double extra = before - static_cast<double>(faces.size());
         if (valence_change >= extra - min_gain)
             return false;
-        if (!complex_.replace(faces, border, chords, center))
+        if (!(disk ? complex_.replace(faces, border, chords, *disk, center)
+                   : complex_.replace(faces, border, chords)))
             return false;
         const Index first = static_cast<Index>(complex_.faces().size()) - complex_.new_face_count();
         distortion_.resize(complex_.faces().size(), -1.0);
@@ -139,13 +144,21 @@ private:
                 result.push_back(s);
         return result;
     }
+    // Faces get new, larger numbers when they change: whether any has since faces().size() was
+    // `mark`. What did not lower the energy then will not now.
+    static bool changed_since(const std::vector<Index>& faces, Index mark)
+    {
+        return std::any_of(faces.begin(), faces.end(), [mark](Index f) { return f >= mark; });
+    }
     bool alive(const Side& s) const { return complex_.paths()[s.path].alive; }
 
     PatchComplex& complex_;
     Index min_quads_;
     Context& context_;
-    std::vector<int> valence_;       // Per mesh vertex.
-    std::vector<double> distortion_; // Per face; negative: not known.
+    std::vector<int> valence_;        // Per mesh vertex.
+    std::vector<double> distortion_;  // Per face; negative: not known.
+    std::vector<Index> vertex_tried_; // Per mesh vertex: number of faces at the last relocation.
+    Index straightened_ = 0;          // Number of faces before the last round of straightening.
     QuadImprovement done_;
 };
 
@@ -198,7 +211,7 @@ void Improver::rotate_edges()
             const Index ic = (ia + turn) % 6, id = (ia + turn + 3) % 6;
             const Index c = complex_.start((*border)[ic]), d = complex_.start((*border)[id]);
             if (valence_[c] + 1 > max_valence || valence_[d] + 1 > max_valence ||
-                adjacent(c, (*border)[ic], d))
+                adjacent((*border)[ic], d))
                 continue;
             // A doublet costs as much as a valence of three: it disappears with its quad.
             const double change = valence_cost(valence_[a] - 1) - valence_cost(valence_[a]) +
@@ -239,7 +252,7 @@ bool Improver::try_collapse(const Side& at_v)
     std::vector<std::pair<Index, Index>> chords;
     for (Index k = 3; k + 2 < 2 * n; k += 2) {
         const Index i = (iw + k) % (2 * n);
-        if (adjacent(w, (*border)[iw], complex_.start((*border)[i])))
+        if (adjacent((*border)[iw], complex_.start((*border)[i])))
             return false;
         chords.emplace_back(iw, i);
     }
@@ -247,7 +260,10 @@ bool Improver::try_collapse(const Side& at_v)
         -valence_cost(valence_[v]) + valence_cost(valence_[e0] - 1) - valence_cost(valence_[e0]) +
         valence_cost(valence_[e1] - 1) - valence_cost(valence_[e1]) +
         valence_cost(valence_[w] + static_cast<int>(n) - 2) - valence_cost(valence_[w]);
-    if (!attempt(faces, *border, chords, change))
+    const double credit = complex_.face_count() > count_slack * static_cast<double>(min_quads_)
+                              ? surplus_credit
+                              : 0.0;
+    if (!attempt(faces, *border, chords, change - credit))
         return false;
     valence_[v] = 0;
     --valence_[e0], --valence_[e1];
@@ -286,19 +302,20 @@ void Improver::relocate_vertices()
         const auto border = complex_.border(faces);
         if (!border || border->size() != 2 * n)
             continue;
-        // The mesh vertex nearest to the middle of the star's map.
-        const auto overlay = complex_.overlay(*border);
-        if (!overlay)
+        const Index v = complex_.start(found);
+        if (!changed_since(faces, vertex_tried_[v]))
             continue;
-        const auto map = map_to_polygon(*overlay, regular_polygon(2 * n));
-        if (!map)
+        // The mesh vertex nearest to the middle of the star's map.
+        const auto disk = complex_.mapped(*border);
+        if (!disk)
             continue;
         Index center = invalid_index;
         double nearest = std::numeric_limits<double>::infinity();
-        for (Index i = overlay->boundary_count; i < overlay->vertices.size(); ++i)
-            if (overlay->vertices[i].mesh_vertex != invalid_index && norm(map->uv[i]) < nearest) {
-                nearest = norm(map->uv[i]);
-                center = overlay->vertices[i].mesh_vertex;
+        for (Index i = disk->overlay.boundary_count; i < disk->overlay.vertices.size(); ++i)
+            if (disk->overlay.vertices[i].mesh_vertex != invalid_index &&
+                norm(disk->uv[i]) < nearest) {
+                nearest = norm(disk->uv[i]);
+                center = disk->overlay.vertices[i].mesh_vertex;
             }
         if (center == invalid_index)
             continue;
@@ -311,23 +328,26 @@ void Improver::relocate_vertices()
         }
         if (chords.size() != n)
             continue;
-        const Index v = complex_.start(found);
-        if (attempt(faces, *border, chords, 0.0, center)) {
-            std::swap(valence_[v], valence_[center]);
-            if (v == center)
-                valence_[v] = static_cast<int>(n);
+        if (attempt(faces, *border, chords, 0.0, &*disk, center)) {
+            valence_[v] = 0;
+            valence_[center] = static_cast<int>(n);
             ++done_.relocations;
         }
+        vertex_tried_[center] = static_cast<Index>(complex_.faces().size());
+        vertex_tried_[v] = vertex_tried_[center];
     }
 }
 
 void Improver::straighten_edges()
 {
+    const Index begin = static_cast<Index>(complex_.faces().size());
     const Index count = static_cast<Index>(complex_.paths().size());
     for (Index p = 0; p < count && !context_.cancelled(); ++p) {
         if (!complex_.paths()[p].alive)
             continue;
         const std::vector<Index> faces{complex_.paths()[p].left, complex_.paths()[p].right};
+        if (!changed_since(faces, straightened_))
+            continue;
         const auto border = complex_.border(faces);
         if (!border || border->size() != 6)
             continue;
@@ -336,6 +356,7 @@ void Improver::straighten_edges()
             ++ia;
         attempt(faces, *border, {{ia, (ia + 3) % 6}}, 0.0);
     }
+    straightened_ = begin;
 }
 
 } // namespace
@@ -350,7 +371,7 @@ double face_distortion(PatchComplex& complex, const std::vector<Side>& border)
     return map ? measure_distortion(*overlay, map->uv).dirichlet : infinity;
 }
 
-Status pair_triangles(PatchComplex& complex, Context& context)
+Result<bool> pair_triangles(PatchComplex& complex, Context& context)
 {
     std::vector<PairCandidate> candidates;
     std::vector<Index> path_of;
@@ -382,9 +403,7 @@ Status pair_triangles(PatchComplex& complex, Context& context)
     const auto chosen =
         match_faces(static_cast<Index>(complex.faces().size()), candidates, bottleneck_slack);
     if (!chosen)
-        return Error{ErrorCode::layout_failed,
-                     "the triangles of the base complex cannot be paired completely",
-                     invalid_index};
+        return false;
     for (const Index c : *chosen) {
         const PatchComplex::Path& path = complex.paths()[path_of[c]];
         const std::vector<Index> faces{path.left, path.right};
@@ -392,7 +411,7 @@ Status pair_triangles(PatchComplex& complex, Context& context)
             return Error{ErrorCode::internal, "a pair of faces could not be joined", path_of[c]};
     }
     complex.compact();
-    return {};
+    return true;
 }
 
 QuadImprovement improve_quads(PatchComplex& complex, Index min_quads, Context& context)

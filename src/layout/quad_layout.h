@@ -12,8 +12,9 @@ double face_distortion(PatchComplex& complex, const std::vector<PatchComplex::Si
 
 //! Joins the triangles of K_tri in pairs: K. Bottleneck-optimal in distortion, then least total of
 //! distortion and valence terms. \cite eck_hoppe_1996, section 3.2.
-//! Errors: layout_failed when no perfect matching exists.
-Status pair_triangles(PatchComplex& complex, Context& context);
+//! \return false, with nothing changed, when no perfect matching exists: some pairs cannot be
+//! mapped. Errors: cancelled.
+Result<bool> pair_triangles(PatchComplex& complex, Context& context);
 
 struct QuadImprovement {
     Index rotations = 0, collapses = 0, doublets = 0, relocations = 0;

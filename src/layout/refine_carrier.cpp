@@ -63,19 +63,6 @@ private:
         if (h != invalid_index)
             twin_[h] = g;
     }
-    std::array<double, 3> weights(Index v, Index face) const
-    {
-        const SourcePoint& p = carrier_.vertex_source[v];
-        if (p.face == face)
-            return p.bary;
-        std::array<double, 3> w{};
-        for (int i = 0; i < 3; ++i)
-            for (int k = 0; k < 3; ++k)
-                if (source_.triangle(p.face)[i] == source_.triangle(face)[k])
-                    w[k] = p.bary[i];
-        return w;
-    }
-
     // Splits one side: face (a, b, c) of halfedge a b becomes (a, m, c), a new face is (m, b, c).
     // Returns the halfedge m b.
     Index split_face(Index h, Index m)
@@ -98,7 +85,8 @@ private:
         const Index t = twin_[h], a = from(h), b = to(h);
         const Index m = static_cast<Index>(positions_.size());
         const Index face = carrier_.face_source[h / 3];
-        const auto wa = weights(a, face), wb = weights(b, face);
+        const auto wa = carrier_.weights(source_, a, face);
+        const auto wb = carrier_.weights(source_, b, face);
         SourcePoint p{face, {}};
         for (int k = 0; k < 3; ++k)
             p.bary[k] = 0.5 * (wa[k] + wb[k]);

@@ -234,22 +234,27 @@ std::optional<std::vector<SurfacePath>> draw_segments(const ManifoldMesh& mesh,
     return paths;
 }
 
-std::optional<std::vector<SurfacePath>> retile(OverlayBuilder& builder,
-                                               const std::vector<PathSide>& border,
-                                               const std::vector<std::pair<Index, Index>>& chords,
-                                               Index center)
+std::optional<MappedDisk> map_disk(OverlayBuilder& builder, const std::vector<PathSide>& border)
 {
-    const std::optional<Overlay> overlay = builder.disk(border);
+    std::optional<Overlay> overlay = builder.disk(border);
     if (!overlay)
         return std::nullopt;
     const Index sides = overlay->side_count();
-    const auto map = map_to_polygon(*overlay, sides == 4 ? unit_square() : regular_polygon(sides));
+    auto map = map_to_polygon(*overlay, sides == 4 ? unit_square() : regular_polygon(sides));
     if (!map)
         return std::nullopt;
+    return MappedDisk{std::move(*overlay), std::move(map->uv)};
+}
+
+std::optional<std::vector<SurfacePath>> retile(const ManifoldMesh& mesh, const MappedDisk& disk,
+                                               const std::vector<std::pair<Index, Index>>& chords,
+                                               Index center)
+{
+    const Overlay& overlay = disk.overlay;
     Index center_vertex = invalid_index;
     if (center != invalid_index) {
-        for (Index v = overlay->boundary_count; v < overlay->vertices.size(); ++v)
-            if (overlay->vertices[v].mesh_vertex == center)
+        for (Index v = overlay.boundary_count; v < overlay.vertices.size(); ++v)
+            if (overlay.vertices[v].mesh_vertex == center)
                 center_vertex = v;
         if (center_vertex == invalid_index)
             return std::nullopt;
@@ -257,8 +262,8 @@ std::optional<std::vector<SurfacePath>> retile(OverlayBuilder& builder,
     std::vector<Segment> segments;
     for (const auto& [a, b] : chords)
         segments.push_back(
-            {overlay->corners[a], b == invalid_index ? center_vertex : overlay->corners[b]});
-    return draw_segments(builder.mesh(), *overlay, map->uv, segments);
+            {overlay.corners[a], b == invalid_index ? center_vertex : overlay.corners[b]});
+    return draw_segments(mesh, overlay, disk.uv, segments);
 }
 
 } // namespace bot2nurbs

@@ -24,12 +24,19 @@ std::optional<std::vector<SurfacePath>> draw_segments(const ManifoldMesh& mesh,
                                                       const std::vector<Vec2>& uv,
                                                       const std::vector<Segment>& segments);
 
-//! The one primitive of layout changes: new paths inside a disk. `chords` join corners of the
-//! border, by number; they may share ends but not cross. With `center`, a mesh vertex inside the
-//! disk, a chord {k, invalid_index} joins corner k to it. The disk is mapped to a regular polygon
-//! (a square when it has four sides). Empty when the disk cannot be mapped; nothing is changed.
-std::optional<std::vector<SurfacePath>> retile(OverlayBuilder& builder,
-                                               const std::vector<PathSide>& border,
+//! A disk and its map to a regular polygon (a square when it has four sides).
+struct MappedDisk {
+    Overlay overlay;
+    std::vector<Vec2> uv;
+};
+
+//! Empty when the region to the left of the border is not a disk or cannot be mapped.
+std::optional<MappedDisk> map_disk(OverlayBuilder& builder, const std::vector<PathSide>& border);
+
+//! The one primitive of layout changes: new paths inside a mapped disk. `chords` join corners of
+//! the border, by number; they may share ends but not cross. With `center`, a mesh vertex inside
+//! the disk, a chord {k, invalid_index} joins corner k to it. Empty when the paths do not fit.
+std::optional<std::vector<SurfacePath>> retile(const ManifoldMesh& mesh, const MappedDisk& disk,
                                                const std::vector<std::pair<Index, Index>>& chords,
                                                Index center = invalid_index);
 

@@ -76,7 +76,9 @@ TEST(Retile, the_diagonal_of_two_octants_divides_them_into_two_disks_of_equal_ar
     const std::vector<PathSide> border{{&xy, false}, {&yx, false}, {&xz, false}, {&zx, false}};
     const auto whole = builder.disk(border);
     ASSERT_TRUE(whole);
-    const auto paths = retile(builder, border, {{0, 2}});
+    const auto disk = map_disk(builder, border);
+    ASSERT_TRUE(disk);
+    const auto paths = retile(o.mesh, *disk, {{0, 2}});
     ASSERT_TRUE(paths);
     expect_sound(o.mesh, paths->front());
     const SurfacePath& d = paths->front();
@@ -105,8 +107,10 @@ TEST(Retile, spokes_to_a_centre_divide_a_disk_into_disjoint_sectors)
         if (center == invalid_index)
             continue;
         const Index none = invalid_index;
+        const auto disk = map_disk(builder, border);
+        ASSERT_TRUE(disk);
         const auto spokes =
-            retile(builder, border, {{0, none}, {1, none}, {2, none}, {3, none}}, center);
+            retile(o.mesh, *disk, {{0, none}, {1, none}, {2, none}, {3, none}}, center);
         ASSERT_TRUE(spokes);
         double area = 0.0;
         for (std::size_t s = 0; s < 4; ++s) {
@@ -144,7 +148,9 @@ TEST(Retile, several_chords_from_one_corner_keep_their_order_on_every_edge)
     std::vector<std::pair<Index, Index>> chords;
     for (Index k = 2; k + 1 < ring.size(); ++k)
         chords.emplace_back(0, k);
-    const auto paths = retile(builder, border, chords);
+    const auto disk = map_disk(builder, border);
+    ASSERT_TRUE(disk);
+    const auto paths = retile(o.mesh, *disk, chords);
     ASSERT_TRUE(paths);
     std::vector<std::pair<Index, double>> crossings;
     for (const SurfacePath& p : *paths) {

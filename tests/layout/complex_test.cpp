@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+#include "layout/base_complex.h"
+#include "layout/quad_layout.h"
+#include "layout/split_in_quads.h"
+
+#include "mesh_fixtures.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+
+namespace bot2nurbs::fixtures {
+namespace {
+
+double area(const ManifoldMesh& mesh)
+{
+    double sum = 0.0;
+    for (Index f = 0; f < mesh.face_count(); ++f)
+        sum += 0.5 * norm(mesh.area_vector(f));
+    return sum;
+}
+
+PatchComplex base_complex(const ManifoldMesh& mesh, Index sites)
+{
+    Tiles tiles(mesh, std::vector<double>(mesh.vertex_count(), 1.0));
+    tiles.grow({0});
+    tiles.add_farthest(sites);
+    for (auto missing = tiles.violations(); !missing.empty(); missing = tiles.violations())
+        tiles.add(missing);
+    Context context;
+    auto complex = build_base_complex(tiles, context);
+    EXPECT_TRUE(complex.ok());
+    return std::move(*complex);
+}
+
+// Every face is a disk with an injective map, together they cover the mesh once, and no two paths
+// cross an edge at the same place.
+void expect_sound(PatchComplex& complex, Index sides, const std::string& what)
+{
+    double sum = 0.0;
+    for (Index f = 0; f < complex.faces().size(); ++f) {
+        if (!complex.faces()[f].alive())
+            continue;
+        ASSERT_EQ(complex.faces()[f].sides.size(), sides) << what;
+        const auto overlay = complex.overlay(f);
+        ASSERT_TRUE(overlay) << what << " face " << f;
+        ASSERT_TRUE(map_to_polygon(*overlay, regular_polygon(sides))) << what << " face " << f;
+        for (const auto& t : overlay->triangles)
+            sum += 0.5 *
+                   norm(cross(overlay->vertices[t[1]].position - overlay->vertices[t[0]].position,
+                              overlay->vertices[t[2]].position - overlay->vertices[t[0]].position));
+    }
+    EXPECT_NEAR(sum, area(complex.mesh()), 1e-9 * area(complex.mesh())) << what;
+    std::map<std::pair<Index, double>, int> crossings;
+    for (const auto& p : complex.paths())
+        if (p.alive)
+            for (const PathNode& n : p.geometry.nodes)
+                if (!n.is_vertex()) {
+                    const std::pair<Index, double> place(complex.mesh().edge(n.halfedge), n.t);
+                    EXPECT_EQ(++crossings[place], 1) << what;
+                }
+}
+
+TEST(BaseComplex, of_every_fixture_is_a_sound_triangulation)
+{
+    for (const auto& [name, mesh, genus] : closed_meshes())
+        for (const Index sites : {4u, 20u}) {
+            PatchComplex complex = base_complex(mesh, std::min(sites, mesh.vertex_count()));
+            expect_sound(complex, 3, name);
+            Context context;
+            straighten_triangles(complex, context);
+            expect_sound(complex, 3, name + " straightened");
+        }
+}
+
+TEST(BaseComplex, with_every_vertex_a_site_is_the_mesh_itself)
+{
+    const ManifoldMesh mesh = icosphere(1);
+    PatchComplex complex = base_complex(mesh, mesh.vertex_count());
+    EXPECT_EQ(complex.face_count(), mesh.face_count());
+    for (const auto& p : complex.paths()) {
+        EXPECT_TRUE(p.geometry.nodes.empty());
+        EXPECT_NE(mesh.find_halfedge(p.geometry.a, p.geometry.b), invalid_index);
+    }
+}
+
+TEST(PatchComplex, stays_sound_through_random_flips_and_undos)
+{
+    const ManifoldMesh mesh = torus(30, 15);
+    PatchComplex complex = base_complex(mesh, 40);
+    std::mt19937 random(11);
+    int flips = 0, undone = 0;
+    for (int step = 0; step < 300; ++step) {
+        const Index p = static_cast<Index>(random() % complex.paths().size());
+        if (!complex.paths()[p].alive)
+            continue;
+        const std::vector<Index> faces{complex.paths()[p].left, complex.paths()[p].right};
+        const auto border = complex.border(faces);
+        if (!border || border->size() != 4)
+            continue;
+        Index a = 0;
+        while (complex.start((*border)[a]) != complex.paths()[p].geometry.a)
+            ++a;
+        const PatchComplex::Side opposite = (*border)[(a + 1) % 4];
+        bool joined = false;
+        for (const auto& s : complex.star(opposite))
+            joined = joined || complex.end(s) == complex.start((*border)[(a + 3) % 4]);
+        if (joined)
+            continue;
+        if (!complex.replace(faces, *border, {{(a + 1) % 4, (a + 3) % 4}}))
+            continue;
+        ++flips;
+        if (step % 3 == 0) {
+            complex.undo();
+            ++undone;
+        }
+    }
+    EXPECT_GT(flips, 100);
+    EXPECT_GT(undone, 20);
+    expect_sound(complex, 3, "flipped");
+    complex.compact();
+    expect_sound(complex, 3, "compacted");
+}
+
+TEST(QuadLayout, pairs_every_triangle_and_stays_sound_through_improvement)
+{
+    for (const auto& [name, mesh, genus] : closed_meshes()) {
+        PatchComplex complex = base_complex(mesh, std::min<Index>(24, mesh.vertex_count()));
+        const Index triangles = complex.face_count();
+        Context context;
+        const auto paired = pair_triangles(complex, context);
+        ASSERT_TRUE(paired.ok() && *paired) << name;
+        EXPECT_EQ(2 * complex.face_count(), triangles) << name;
+        expect_sound(complex, 4, name + " paired");
+        improve_quads(complex, 6, context);
+        expect_sound(complex, 4, name + " improved");
+    }
+}
+
+TEST(QuadLayout, improvement_lowers_distortion_and_leaves_few_extraordinary_vertices)
+{
+    const ManifoldMesh mesh = icosphere(4);
+    PatchComplex complex = base_complex(mesh, 80);
+    Context context;
+    ASSERT_TRUE(*pair_triangles(complex, context));
+    const auto mean_distortion = [&complex] {
+        double sum = 0.0;
+        for (const auto& f : complex.faces())
+            sum += f.alive() ? face_distortion(complex, f.sides) : 0.0;
+        return sum / complex.face_count();
+    };
+    const double before = mean_distortion();
+    improve_quads(complex, 60, context);
+    EXPECT_LT(mean_distortion(), before);
+    std::map<Index, int> valence;
+    for (const auto& p : complex.paths())
+        if (p.alive)
+            ++valence[p.geometry.a], ++valence[p.geometry.b];
+    Index extraordinary = 0;
+    for (const auto& [v, n] : valence) {
+        extraordinary += n != 4;
+        EXPECT_LE(n, 6);
+    }
+    EXPECT_LE(3 * extraordinary, valence.size());
+}
+
+TEST(QuadLayout, splitting_every_triangle_in_three_quads_is_sound_too)
+{
+    for (const auto& [name, mesh, genus] : closed_meshes()) {
+        PatchComplex triangles = base_complex(mesh, std::min<Index>(12, mesh.vertex_count()));
+        const Index count = triangles.face_count();
+        Context context;
+        auto split = split_in_quads(triangles, mesh, CarrierMesh::from_source(mesh), context);
+        ASSERT_TRUE(split.ok()) << name << ": " << split.error().message;
+        EXPECT_EQ(split->complex.face_count(), 3 * count) << name;
+        expect_sound(split->complex, 4, name + " split");
+        const CarrierMesh& carrier = *split->carrier;
+        for (Index v = 0; v < carrier.mesh.vertex_count(); ++v)
+            ASSERT_LT(norm(mesh.at(carrier.vertex_source[v]) - carrier.mesh.position(v)), 1e-13);
+        EXPECT_NEAR(area(carrier.mesh), area(mesh), 1e-10 * area(mesh));
+        EXPECT_EQ(carrier.mesh.genus(), genus);
+    }
+}
+
+} // namespace
+} // namespace bot2nurbs::fixtures

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "layout/refine_carrier.h"
+
+#include "mesh_fixtures.h"
+
+#include <gtest/gtest.h>
+
+namespace bot2nurbs::fixtures {
+namespace {
+
+double area(const ManifoldMesh& mesh)
+{
+    double sum = 0.0;
+    for (Index f = 0; f < mesh.face_count(); ++f)
+        sum += 0.5 * norm(mesh.area_vector(f));
+    return sum;
+}
+
+TEST(RefineCarrier, leaves_no_edge_longer_than_the_limit_and_the_surface_as_it_was)
+{
+    for (const auto& [name, mesh, genus] : closed_meshes()) {
+        const double limit = 0.11 * mesh.box().diagonal();
+        const CarrierMesh carrier =
+            refine_carrier(mesh, std::vector<double>(mesh.vertex_count(), limit), 1000000);
+        const ManifoldMesh& fine = carrier.mesh;
+        for (Index h = 0; h < fine.halfedge_count(); ++h)
+            ASSERT_LE(norm(fine.position(fine.from(h)) - fine.position(fine.to(h))), limit) << name;
+        EXPECT_NEAR(area(fine), area(mesh), 1e-12 * area(mesh)) << name;
+        EXPECT_TRUE(fine.closed());
+        EXPECT_EQ(fine.genus(), genus);
+        // Every corner of every face lies on the face's source face, at its provenance.
+        for (Index v = 0; v < fine.vertex_count(); ++v)
+            ASSERT_LT(norm(mesh.at(carrier.vertex_source[v]) - fine.position(v)), 1e-14);
+        for (Index f = 0; f < fine.face_count(); ++f) {
+            const Vec3 n = normalized(mesh.area_vector(carrier.face_source[f]));
+            const Vec3 p = mesh.position(mesh.triangle(carrier.face_source[f])[0]);
+            for (const Index v : fine.triangle(f))
+                ASSERT_NEAR(dot(n, fine.position(v) - p), 0.0, 1e-13) << name;
+            ASSERT_GT(dot(n, fine.area_vector(f)), 0.0);
+        }
+    }
+}
+
+TEST(RefineCarrier, of_a_fine_mesh_is_the_mesh_itself)
+{
+    const ManifoldMesh mesh = icosphere(2);
+    const CarrierMesh carrier =
+        refine_carrier(mesh, std::vector<double>(mesh.vertex_count(), 10.0), 1000000);
+    EXPECT_FALSE(carrier.refined);
+    EXPECT_EQ(carrier.mesh.face_count(), mesh.face_count());
+}
+
+TEST(RefineCarrier, stops_at_the_number_of_splits_allowed)
+{
+    const ManifoldMesh mesh = octahedron();
+    const CarrierMesh carrier =
+        refine_carrier(mesh, std::vector<double>(mesh.vertex_count(), 1e-3), 100);
+    EXPECT_EQ(carrier.mesh.vertex_count(), mesh.vertex_count() + 100);
+    EXPECT_EQ(carrier.mesh.genus(), 0);
+}
+
+} // namespace
+} // namespace bot2nurbs::fixtures
