@@ -38,7 +38,7 @@ PUBLIC_HEADERS = {
     "layout": "layout",
     "spline_network": "spline",
     "fit_network": "fit",
-    "deviation": "fit",
+    "deviation": "brep",
     "brep": "brep",
     "read_mesh": "io",
     "write_brep": "io",

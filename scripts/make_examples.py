@@ -62,13 +62,13 @@ def bracket(p):
     foot = box(p, (0, 0, 8), (40, 26, 8), 7)
     upright = box(p, (-30, 0, 32), (9, 26, 32), 8)
     rib = capsule(p, (-26, 0, 34), (6, 0, 10), 7, 6)
-    body = smooth_union(smooth_union(foot, upright, 10), rib, 8)
+    body = smooth_union(smooth_union(foot, upright, 16), rib, 14)
     for hole in (
         cylinder(p, (20, -11, 0), (0, 0, 1), 5.5),
         cylinder(p, (20, 11, 0), (0, 0, 1), 5.5),
         cylinder(p, (0, 0, 47), (1, 0, 0), 8),
     ):
-        body = smooth_difference(body, hole, 6)
+        body = smooth_difference(body, hole, 9)
     return body
 
 
@@ -93,11 +93,11 @@ def knot(p):
 def torso(p):
     """A blobby torso with a head, two arms and two legs cut short."""
     d = ball(p, (0, 0, 0), 1.0)
-    d = smooth_union(d, ball(p, (0, 0.1, 1.15), 0.9), 0.5)
-    d = smooth_union(d, ball(p, (0, 0.15, 2.65), 0.62), 0.45)
+    d = smooth_union(d, ball(p, (0, 0.1, 1.15), 0.9), 0.6)
+    d = smooth_union(d, ball(p, (0, 0.15, 2.65), 0.62), 0.9)
     for side in (-1, 1):
-        d = smooth_union(d, capsule(p, (0.8 * side, 0, 1.6), (1.7 * side, 0.5, 0.6), 0.4, 0.32), 0.35)
-        d = smooth_union(d, capsule(p, (0.5 * side, 0, -0.6), (0.75 * side, 0.1, -2.0), 0.5, 0.42), 0.35)
+        d = smooth_union(d, capsule(p, (0.8 * side, 0, 1.6), (2.0 * side, 0.4, 1.1), 0.46, 0.42), 0.75)
+        d = smooth_union(d, capsule(p, (0.55 * side, 0, -0.6), (1.15 * side, 0.1, -1.8), 0.5, 0.5), 0.75)
     return d
 
 
@@ -232,6 +232,12 @@ def check(name, vertices, triangles, genus):
     if volume <= 0.0:
         sys.exit(f"{name}: inside out")
     normal = np.cross(b - a, c - a)
+    # The models are meant to be smooth: no edge turns by more than the command would call sharp.
+    unit = normal / np.linalg.norm(normal, axis=1)[:, None]
+    face_of = {tuple(e): i % len(triangles) for i, e in enumerate(halfedges)}
+    turn = min(unit[f] @ unit[face_of[b, a]] for (a, b), f in face_of.items())
+    if turn < np.cos(np.radians(40)):
+        sys.exit(f"{name}: an edge turns by {np.degrees(np.arccos(turn)):.0f} degrees")
     sides = ((b - a) ** 2).sum(1) + ((c - b) ** 2).sum(1) + ((a - c) ** 2).sum(1)
     quality = 2 * np.sqrt(3) * np.linalg.norm(normal, axis=1) / sides
     print(
@@ -272,9 +278,9 @@ def write_obj(path, vertices, triangles):
 
 MODELS = [
     # file, function, box, cell, genus, writer
-    ("bracket.ply", bracket, ((-46, -32, -6), (46, 32, 70)), 2.6, 3, write_ply),
+    ("bracket.ply", bracket, ((-46, -32, -6), (46, 32, 70)), 2.3, 3, write_ply),
     ("knot.ply", knot, ((-3.8, -3.8, -2.1), (3.8, 3.8, 2.1)), 0.17, 1, write_ply),
-    ("torso.off", torso, ((-2.3, -1.3, -2.7), (2.3, 1.3, 3.6)), 0.14, 0, write_off),
+    ("torso.off", torso, ((-2.7, -1.3, -2.7), (2.7, 1.3, 3.6)), 0.14, 0, write_off),
     ("sphere.obj", sphere, ((-1.3, -1.3, -1.3), (1.3, 1.3, 1.3)), 0.24, 0, write_obj),
 ]
 

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: MIT
+"""Runs the command on a mesh file and judges what it did: part of the campaigns of this folder."""
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+MAX_ANGLE_DEG = 1e-8  # Between normals at a join: rounding of doubles gives about 1e-11.
+MEMORY_LIMIT = 6 << 30  # Bytes of address space: a runaway allocation must not stop the machine.
+REFUSALS = {3: "cannot read", 5: "rejected", 6: "stage failed"}
+
+
+@dataclass
+class Run:
+    """One run of the command."""
+
+    command: list
+    code: int = 0  # Exit code; negative: the signal that ended it.
+    hang: bool = False
+    seconds: float = 0.0
+    report: dict = field(default_factory=dict)
+    stderr: str = ""
+    left: list = field(default_factory=list)  # Names of the files in the folder of the outputs.
+
+    @property
+    def message(self):
+        """The error as the command stated it."""
+        error = self.report.get("error", {}).get("message", "")
+        if error:
+            return error
+        lines = [l for l in self.stderr.splitlines() if not l.endswith("...") and l.strip()]
+        return lines[-1] if lines else ""
+
+    @property
+    def warnings(self):
+        return [w["code"] for w in self.report.get("warnings", [])]
+
+    @property
+    def repairs(self):
+        return [r["code"] for r in self.report.get("input", {}).get("repairs", [])]
+
+
+def find_binary(given):
+    """The binary to test: as given, else the newest of the build folders."""
+    if given:
+        path = Path(given).resolve()
+        if not path.is_file():
+            sys.exit(f"{given}: no such file")
+        return path
+    built = [p for p in (ROOT / "build").glob("*/bot2nurbs") if p.is_file()]
+    if not built:
+        sys.exit("no build/*/bot2nurbs: build the target bot2nurbs_cli, or name one with --binary")
+    return max(built, key=lambda p: p.stat().st_mtime)
+
+
+def _limit():
+    os.nice(10)
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY_LIMIT, MEMORY_LIMIT))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+def execute(command, seconds):
+    """Runs a command whose JSON comes on standard output, under a time limit."""
+    run = Run([str(c) for c in command])
+    start = time.monotonic()
+    process = subprocess.Popen(
+        run.command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=_limit
+    )
+    try:
+        out, err = process.communicate(timeout=seconds)
+    except subprocess.TimeoutExpired:
+        run.hang = True
+        process.send_signal(signal.SIGKILL)
+        out, err = process.communicate()
+    run.seconds = time.monotonic() - start
+    run.code = process.returncode
+    run.stderr = err.decode("utf-8", "replace")
+    try:
+        run.report = json.loads(out)
+    except ValueError:
+        run.report = {}
+    return run
+
+
+def convert(binary, mesh, seconds, options=(), output="result.3dm", keep=None):
+    """Converts `mesh` in an empty folder; with `keep` the output is moved there."""
+    with tempfile.TemporaryDirectory(prefix="bot2nurbs_") as folder:
+        target = Path(folder) / output
+        run = execute([binary, mesh, target, "--json", "-", *options], seconds)
+        run.left = sorted(p.name for p in Path(folder).iterdir())
+        if keep and target.exists():
+            Path(keep).write_bytes(target.read_bytes())
+    return run
+
+
+def check(binary, mesh, seconds):
+    """What the command says of `mesh` without converting it."""
+    return execute([binary, mesh, "--check", "--json", "-"], seconds)
+
+
+def faults(run, genera=None, output="result.3dm"):
+    """Why a run is no sound result and no proper refusal; empty when it is one of the two.
+
+    `genera`: of the components, where they are known.
+    """
+    if run.hang:
+        return [f"no end after {run.seconds:.0f} s"]
+    if run.code < 0:
+        return [f"ended by signal {signal.Signals(-run.code).name}"]
+    found = []
+    if run.code != 0:
+        if run.code not in REFUSALS:
+            found.append(f"exit code {run.code}: {run.message}")
+        if not run.message:
+            found.append("no message")
+        if run.code in REFUSALS and "error" not in run.report:
+            found.append("no error in the report")
+        if run.left:
+            found.append("left behind: " + ", ".join(run.left))
+        return found
+    report = run.report
+    if not report or "error" in report:
+        return ["exit code 0 without a report of success"]
+    if run.left != [output]:
+        found.append("files written: " + (", ".join(run.left) or "none"))
+    if not report["components"]:
+        found.append("no component")
+    for number, c in enumerate(report["components"]):
+        brep, joins, far = c["brep"], c["continuity"], c["deviation"]
+        where = f"component {number}: " if len(report["components"]) > 1 else ""
+        if not brep["valid"]:
+            found.append(where + "not valid")
+        if not brep["solid"] or brep["boundary_edges"] or brep["nonmanifold_edges"]:
+            found.append(where + "not solid")
+        euler = brep["vertices"] - brep["edges"] + brep["faces"]
+        if euler != 2 - 2 * c["genus"]:
+            found.append(where + f"Euler number {euler} at genus {c['genus']}")
+        if genera is not None and c["genus"] != genera[number]:
+            found.append(where + f"genus {c['genus']} instead of {genera[number]}")
+        if not joins["max_g1_angle_deg"] <= MAX_ANGLE_DEG:
+            found.append(where + f"normals differ by {joins['max_g1_angle_deg']:.2g} degrees")
+        if joins["max_gap"] != 0.0 or brep["max_edge_gap"] != 0.0:
+            found.append(where + f"gap {max(joins['max_gap'], brep['max_edge_gap']):.2g}")
+        if not (far["rms_relative"] >= 0.0 and far["max_relative"] < 1.0):
+            found.append(where + f"deviation {far['max_relative']}")
+    return found
+
+
+def table(header, rows):
+    """A Markdown table as lines."""
+    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
+    for row in rows:
+        cells = [str(c).replace("|", "\\|").replace("\n", " ") for c in row]
+        lines.append("| " + " | ".join(cells) + " |")
+    return lines
