@@ -193,7 +193,7 @@ std::optional<std::vector<SurfacePath>> draw_segments(const ManifoldMesh& mesh,
         return p.position < q.position;
     });
     for (std::size_t i = 0; i < hits.size();) {
-        std::size_t j = i;
+        std::size_t j = i + 1;
         while (j < hits.size() && hits[j].low == hits[i].low && hits[j].high == hits[i].high)
             ++j;
         const double low = hits[i].t_low, width = hits[i].t_high - low;

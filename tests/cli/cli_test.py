@@ -266,7 +266,7 @@ class BadInput(CliTest):
             c, d = (2 * i + 2, 2 * i + 3) if i + 1 < n else (1, 0)
             faces += [(a, c, b), (b, c, d)]
         mesh = self.write("a.off", off(vertices, faces))
-        self.assert_refused(5, "orient", mesh, "a.3dm")
+        self.assert_refused(5, "one-sided", mesh, "a.3dm")
 
     def test_an_output_folder_that_is_missing_is_noticed_before_work(self):
         run = self.assert_refused(4, "no folder", SPHERE, "no/such/a.3dm")
