@@ -17,7 +17,7 @@ packages=(
     libgtest-dev libbenchmark-dev pkg-config)
 for argument in "$@"; do
     case $argument in
-    --render) packages+=(python3-vtk9 python3-numpy) ;;
+    --render) packages+=(python3-vtk9 python3-numpy xvfb xauth) ;;
     --tidy) packages+=(clang-tidy-16) ;;
     *)
         echo "usage: scripts/install_dependencies.sh [--render] [--tidy]" >&2
