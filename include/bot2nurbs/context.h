@@ -17,6 +17,7 @@ struct StageRecord {
     std::string name;
     double seconds = 0.0;
     double peak_rss_mib = 0.0; //!< Peak resident memory of the process when the stage ended.
+    double cpu_seconds = 0.0;  //!< Processor time of all threads of the process in the stage.
 };
 
 //! Progress, cancellation, thread count and log sink of one conversion.
@@ -53,7 +54,7 @@ public:
 private:
     std::atomic<bool> cancelled_{false};
     std::string stage_;
-    double stage_start_ = 0.0;
+    double stage_start_ = 0.0, stage_start_cpu_ = 0.0;
     std::vector<StageRecord> stages_;
 };
 

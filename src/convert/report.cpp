@@ -203,7 +203,10 @@ Json stages_json(const std::vector<StageRecord>& stages)
 {
     Json j = Json::array();
     for (const StageRecord& s : stages)
-        j.push_back({{"name", s.name}, {"seconds", s.seconds}, {"peak_rss_mib", s.peak_rss_mib}});
+        j.push_back({{"name", s.name},
+                     {"seconds", s.seconds},
+                     {"cpu_seconds", s.cpu_seconds},
+                     {"peak_rss_mib", s.peak_rss_mib}});
     return j;
 }
 

@@ -14,6 +14,16 @@ double now_seconds()
     return duration<double>(steady_clock::now().time_since_epoch()).count();
 }
 
+double cpu_seconds()
+{
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
 double peak_rss_mib()
 {
     rusage usage{};
@@ -28,6 +38,7 @@ void Context::begin_stage(const std::string& name)
     end_stage();
     stage_ = name;
     stage_start_ = now_seconds();
+    stage_start_cpu_ = cpu_seconds();
     progress(0.0);
 }
 
@@ -36,7 +47,8 @@ void Context::end_stage()
     if (stage_.empty())
         return;
     progress(1.0);
-    stages_.push_back({stage_, now_seconds() - stage_start_, peak_rss_mib()});
+    stages_.push_back(
+        {stage_, now_seconds() - stage_start_, peak_rss_mib(), cpu_seconds() - stage_start_cpu_});
     stage_.clear();
 }
 

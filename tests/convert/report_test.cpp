@@ -39,7 +39,7 @@ ConvertReport example_report()
     }
     report.outputs = {{"out.step", "step", 1234}};
     report.warnings = {{"sharp_edges", "3 edges", invalid_index}};
-    report.stages = {{"read", 0.5, 12.0}};
+    report.stages = {{"read", 0.5, 12.0, 0.75}};
     return report;
 }
 
@@ -63,6 +63,7 @@ TEST(Report, has_the_fixed_names_and_sums_over_components)
     EXPECT_EQ(j["features"]["smoothed_edges"], 3);
     EXPECT_EQ(j["outputs"][0]["bytes"], 1234);
     EXPECT_EQ(j["stages"][0]["peak_rss_mib"], 12.0);
+    EXPECT_EQ(j["stages"][0]["cpu_seconds"], 0.75);
     EXPECT_TRUE(j["warnings"][0]["element"].is_null());
     EXPECT_EQ(j["components"].size(), 2u);
 }
