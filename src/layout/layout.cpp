@@ -43,6 +43,18 @@ double surface_area(const ManifoldMesh& mesh)
     return area;
 }
 
+// Area in the metric scaled by a density per vertex.
+double scaled_area(const ManifoldMesh& mesh, const std::vector<double>& density)
+{
+    double area = 0.0;
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        const auto& t = mesh.triangle(f);
+        const double d = (density[t[0]] + density[t[1]] + density[t[2]]) / 3.0;
+        area += 0.5 * norm(mesh.area_vector(f)) * d * d;
+    }
+    return area;
+}
+
 Index default_patches(double bending, int genus)
 {
     double limit = genus >= 3 ? max_default_patches_genus_3 : max_default_patches;
@@ -153,7 +165,7 @@ Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOption
     // V - E + F of quads on a surface of genus g: patches = vertices - (2 - 2 g).
     const double vertices =
         surplus * static_cast<double>(summary.target_patches) + 2.0 - 2.0 * genus;
-    Tiles tiles(carrier.mesh, std::move(field.density));
+    Tiles tiles(carrier.mesh, field.density);
     place_sites(tiles, static_cast<Index>(std::max(vertices, 4.0)), summary);
     if (context.cancelled())
         return Context::cancelled_error("layout");
@@ -163,7 +175,12 @@ Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOption
         return complex.error();
     straighten_triangles(*complex, context);
     const auto finish = [&](PatchComplex& quads, CarrierMesh& on) -> Result<LayoutResult> {
-        improve_quads(quads, summary.target_patches, context);
+        // Vertices that came with a split have no density of their own yet.
+        if (on.mesh.vertex_count() != field.density.size())
+            field = measure_size_field(on.mesh, curvature_scale * source.box().diagonal());
+        const SizeMetric metric{field.density, scaled_area(on.mesh, field.density) /
+                                                   static_cast<double>(summary.target_patches)};
+        improve_quads(quads, summary.target_patches, metric, context);
         if (context.cancelled())
             return Context::cancelled_error("layout");
         Result<QuadDomain> domain = make_domain(quads, std::move(on));

@@ -13,22 +13,30 @@ namespace {
 
 using Side = PatchComplex::Side;
 
-// What one unit of (valence - 4)^2 costs against one unit of harmonic energy (a square patch has
-// 1).
+// What one unit of (valence - 4)^2 costs against the energy of a patch (a square of the wanted size
+// has 1).
 constexpr double valence_weight = 0.35;
 // Total cost is lowered among pairings whose worst distortion is within this factor of the optimum.
 constexpr double bottleneck_slack = 1.3;
 // A change must lower the energy by this much, so that rounding does not make it cycle.
 constexpr double min_gain = 1e-3;
 constexpr int max_passes = 6;
+// A closed surface of quads with fewer than this is left as it is.
+constexpr Index min_faces = 3;
 // While there are more than this factor times the wanted quads, one quad less is worth this much.
 constexpr double count_slack = 1.1;
 constexpr double surplus_credit = 1.5;
 // Largest valence a change may make: the masks grow fast beyond (facts on the masks' norms).
 constexpr int max_valence = 6;
 
+// The splines do not exist at vertices of degree two. They are worth this much to remove, so that
+// it is done by whatever change distorts least, and never made.
+constexpr double doublet_cost = 10.0;
+
 double valence_cost(int valence)
 {
+    if (valence == 2)
+        return doublet_cost;
     const double d = static_cast<double>(valence) - 4.0;
     return valence_weight * d * d;
 }
@@ -36,8 +44,8 @@ double valence_cost(int valence)
 // The state of K while it is improved: distortion per face and valence per mesh vertex.
 class Improver {
 public:
-    Improver(PatchComplex& complex, Index min_quads, Context& context)
-        : complex_(complex), min_quads_(min_quads), context_(context)
+    Improver(PatchComplex& complex, Index min_quads, const SizeMetric& metric, Context& context)
+        : complex_(complex), min_quads_(min_quads), metric_(metric), context_(context)
     {
         valence_.assign(complex.mesh().vertex_count(), 0);
         vertex_tried_.assign(complex.mesh().vertex_count(), 0);
@@ -50,27 +58,29 @@ public:
     {
         for (int pass = 0; pass < max_passes && !context_.cancelled(); ++pass) {
             const QuadImprovement before = done_;
-            remove_doublets();
+            rotate_edges();
+            remove_doublets(false);
             collapse_quads();
             rotate_edges();
-            remove_doublets();
             relocate_vertices();
             straighten_edges();
             if (before.rotations == done_.rotations && before.collapses == done_.collapses &&
                 before.doublets == done_.doublets && pass > 0)
                 break;
         }
+        if (!context_.cancelled())
+            remove_doublets(true);
         return done_;
     }
 
 private:
-    double distortion(Index f)
+    double energy(Index f)
     {
-        if (distortion_.size() <= f)
-            distortion_.resize(f + 1, -1.0);
-        if (distortion_[f] < 0.0)
-            distortion_[f] = face_distortion(complex_, complex_.faces()[f].sides);
-        return distortion_[f];
+        if (energy_.size() <= f)
+            energy_.resize(f + 1, -1.0);
+        if (energy_[f] < 0.0)
+            energy_[f] = face_energy(complex_, complex_.faces()[f].sides, metric_);
+        return energy_[f];
     }
 
     // Whether an edge joins the start of a side to vertex b.
@@ -88,38 +98,30 @@ private:
                  const std::vector<std::pair<Index, Index>>& chords, double valence_change,
                  const MappedDisk* disk = nullptr, Index center = invalid_index)
     {
-        double before = 0.0, worst = 0.0;
-        for (const Index f : faces) {
-            before += distortion(f);
-            worst = std::max(worst, distortion(f));
-        }
-        // Distortion is at least one for each new quad.
-        const double new_faces =
-            static_cast<double>(chords.size()) + (center == invalid_index ? 1.0 : 0.0);
-        const double extra = before - static_cast<double>(faces.size());
-        if (valence_change >= extra - min_gain)
+        double before = 0.0;
+        for (const Index f : faces)
+            before += energy(f);
+        const double allowed = before - valence_change - min_gain;
+        if (!(allowed > 0.0))
             return false;
         if (!(disk ? complex_.replace(faces, border, chords, *disk, center)
                    : complex_.replace(faces, border, chords)))
             return false;
         const Index first = static_cast<Index>(complex_.faces().size()) - complex_.new_face_count();
-        distortion_.resize(complex_.faces().size(), -1.0);
-        double after = 0.0, worst_after = 0.0;
-        for (Index f = first; f < complex_.faces().size(); ++f) {
-            distortion_[f] = -1.0;
-            after += distortion(f);
-            worst_after = std::max(worst_after, distortion(f));
-            if (after - new_faces + valence_change >= extra - min_gain)
-                break;
+        energy_.resize(complex_.faces().size(), -1.0);
+        double after = 0.0;
+        for (Index f = first; f < complex_.faces().size() && after < allowed; ++f) {
+            energy_[f] = -1.0;
+            after += energy(f);
         }
-        if (after - new_faces + valence_change < extra - min_gain)
+        if (after < allowed)
             return true;
         complex_.undo();
-        distortion_.resize(first);
+        energy_.resize(first);
         return false;
     }
 
-    void remove_doublets();
+    void remove_doublets(bool all);
     void rotate_edges();
     void collapse_quads();
     void relocate_vertices();
@@ -154,22 +156,23 @@ private:
 
     PatchComplex& complex_;
     Index min_quads_;
+    const SizeMetric& metric_;
     Context& context_;
     std::vector<int> valence_;        // Per mesh vertex.
-    std::vector<double> distortion_;  // Per face; negative: not known.
+    std::vector<double> energy_;      // Per face; negative: not known.
     std::vector<Index> vertex_tried_; // Per mesh vertex: number of faces at the last relocation.
     Index straightened_ = 0;          // Number of faces before the last round of straightening.
     QuadImprovement done_;
 };
 
-void Improver::remove_doublets()
+void Improver::remove_doublets(bool all)
 {
     bool changed = true;
     while (changed) {
         changed = false;
         for (const Side& s : vertex_sides()) {
             const Index v = complex_.start(s);
-            if (valence_[v] != 2 || !alive(s) || complex_.face_count() <= 3)
+            if (valence_[v] != 2 || !alive(s) || complex_.face_count() <= min_faces)
                 continue;
             const std::vector<Index> faces{complex_.face_at(s),
                                            complex_.face_at({s.path, !s.reversed})};
@@ -177,10 +180,16 @@ void Improver::remove_doublets()
             if (!border || border->size() != 4)
                 continue;
             const Index a = complex_.end(s), b = complex_.start(complex_.previous(s));
-            if (!complex_.replace(faces, *border, {}))
-                continue;
-            distortion_.resize(complex_.faces().size(), -1.0);
-            distortion_.back() = -1.0;
+            const double change = -doublet_cost + valence_cost(valence_[a] - 1) -
+                                  valence_cost(valence_[a]) + valence_cost(valence_[b] - 1) -
+                                  valence_cost(valence_[b]);
+            if (!attempt(faces, *border, {}, change)) {
+                if (!all)
+                    continue;
+                complex_.replace(faces, *border, {});
+                energy_.resize(complex_.faces().size(), -1.0);
+                energy_.back() = -1.0;
+            }
             valence_[v] = 0;
             --valence_[a], --valence_[b];
             ++done_.doublets;
@@ -197,7 +206,6 @@ void Improver::rotate_edges()
             continue;
         const Side s{p, false};
         const Index a = complex_.start(s), b = complex_.end(s);
-        // Degree two is allowed on the way: the doublet is removed next.
         if (valence_[a] < 3 || valence_[b] < 3)
             continue;
         const std::vector<Index> faces{complex_.face_at(s), complex_.face_at({p, true})};
@@ -213,7 +221,6 @@ void Improver::rotate_edges()
             if (valence_[c] + 1 > max_valence || valence_[d] + 1 > max_valence ||
                 adjacent((*border)[ic], d))
                 continue;
-            // A doublet costs as much as a valence of three: it disappears with its quad.
             const double change = valence_cost(valence_[a] - 1) - valence_cost(valence_[a]) +
                                   valence_cost(valence_[b] - 1) - valence_cost(valence_[b]) +
                                   valence_cost(valence_[c] + 1) - valence_cost(valence_[c]) +
@@ -368,7 +375,31 @@ double face_distortion(PatchComplex& complex, const std::vector<Side>& border)
     if (!overlay)
         return infinity;
     const auto map = map_to_polygon(*overlay, unit_square());
-    return map ? measure_distortion(*overlay, map->uv).dirichlet : infinity;
+    return map ? measure_distortion(*overlay, map->uv).combined() : infinity;
+}
+
+double face_energy(PatchComplex& complex, const std::vector<Side>& border, const SizeMetric& metric)
+{
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const auto overlay = complex.overlay(border);
+    if (!overlay)
+        return infinity;
+    const auto map = map_to_polygon(*overlay, unit_square());
+    if (!map)
+        return infinity;
+    double size = 0.0;
+    for (std::size_t t = 0; t < overlay->triangles.size(); ++t) {
+        const auto& corner = complex.mesh().triangle(overlay->face[t]);
+        const double density =
+            (metric.density[corner[0]] + metric.density[corner[1]] + metric.density[corner[2]]) /
+            3.0;
+        const auto& v = overlay->triangles[t];
+        const Vec3 p = overlay->vertices[v[1]].position - overlay->vertices[v[0]].position;
+        const Vec3 q = overlay->vertices[v[2]].position - overlay->vertices[v[0]].position;
+        size += 0.5 * norm(cross(p, q)) * density * density;
+    }
+    size /= metric.target_area;
+    return measure_distortion(*overlay, map->uv).combined() * size * size;
 }
 
 Result<bool> pair_triangles(PatchComplex& complex, Context& context)
@@ -414,9 +445,10 @@ Result<bool> pair_triangles(PatchComplex& complex, Context& context)
     return true;
 }
 
-QuadImprovement improve_quads(PatchComplex& complex, Index min_quads, Context& context)
+QuadImprovement improve_quads(PatchComplex& complex, Index min_quads, const SizeMetric& metric,
+                              Context& context)
 {
-    const QuadImprovement done = Improver(complex, min_quads, context).run();
+    const QuadImprovement done = Improver(complex, min_quads, metric, context).run();
     complex.compact();
     return done;
 }

@@ -6,8 +6,9 @@
 
 namespace bot2nurbs {
 
-//! Distortion of a face's map: its harmonic energy on the unit square (1 for a conformal map of a
-//! region with the proportions of a square), infinite when it cannot be mapped.
+//! Distortion of a face's map to the unit square: 1 for a similarity (MapDistortion::combined),
+//! infinite when it cannot be mapped. Harmonic energy alone would not notice a limb squeezed into a
+//! corner of its patch; stretch alone would not notice shear.
 double face_distortion(PatchComplex& complex, const std::vector<PatchComplex::Side>& border);
 
 //! Joins the triangles of K_tri in pairs: K. Bottleneck-optimal in distortion, then least total of
@@ -16,14 +17,26 @@ double face_distortion(PatchComplex& complex, const std::vector<PatchComplex::Si
 //! mapped. Errors: cancelled.
 Result<bool> pair_triangles(PatchComplex& complex, Context& context);
 
+//! The size patches should have: area counted with the square of a density per mesh vertex.
+struct SizeMetric {
+    const std::vector<double>& density;
+    double target_area = 1.0;
+};
+
+//! Energy of a patch: distortion times the square of its size over the target. The sum over all
+//! patches grows with distortion, with uneven sizes, and when fewer patches must cover the surface.
+double face_energy(PatchComplex& complex, const std::vector<PatchComplex::Side>& border,
+                   const SizeMetric& metric);
+
 struct QuadImprovement {
     Index rotations = 0, collapses = 0, doublets = 0, relocations = 0;
 };
 
 //! Improves K: removes vertices of degree two, rotates edges, collapses quads along a diagonal,
 //! moves vertices to the middle of their star and straightens edges, as long as that lowers the
-//! sum of the quads' distortion and a penalty for valences other than four. Quads are only
-//! collapsed while more than `min_quads` remain.
-QuadImprovement improve_quads(PatchComplex& complex, Index min_quads, Context& context);
+//! sum of the quads' energies and a penalty for valences other than four. The number of quads only
+//! falls while more than `min_quads` remain.
+QuadImprovement improve_quads(PatchComplex& complex, Index min_quads, const SizeMetric& metric,
+                              Context& context);
 
 } // namespace bot2nurbs

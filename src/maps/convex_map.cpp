@@ -214,8 +214,10 @@ MapDistortion measure_distortion(const Overlay& overlay, const std::vector<Vec2>
     MapDistortion d;
     if (area > 0.0)
         d.dirichlet = energy / area;
-    if (stretch_squared > 0.0 && source_area > 0.0)
+    if (stretch_squared > 0.0 && source_area > 0.0) {
+        d.stretch = stretch_squared / source_area * area / source_area;
         d.max_stretch = max_stretch / std::sqrt(stretch_squared / source_area);
+    }
     return d;
 }
 

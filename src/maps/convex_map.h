@@ -36,10 +36,17 @@ std::optional<ConvexMap> map_to_polygon(const Overlay& overlay, const std::vecto
 //! True when every triangle is positively oriented, decided exactly.
 bool is_injective(const Overlay& overlay, const std::vector<Vec2>& uv);
 
-//! Distortion of a map to the unit square or another polygon of area `target_area`.
+//! Distortion of a map of an overlay to a region of the plane.
 struct MapDistortion {
-    double dirichlet = 0.0;   //!< Harmonic energy over the target's area; 1 for a conformal map.
-    double max_stretch = 0.0; //!< Largest singular value of the inverse map, over its rms.
+    //! Harmonic energy over the target's area: 1 for a conformal map, whatever its areas.
+    double dirichlet = 0.0;
+    //! Square of the L2 stretch of the inverse map, normalised by both areas: 1 for a similarity,
+    //! large where much surface is squeezed into little of the plane. \cite sander_2001
+    double stretch = 0.0;
+    double max_stretch = 0.0; //!< Largest singular value of the inverse map, over its L2 mean.
+
+    //! One number for both: 1 for a similarity, larger for anything else.
+    double combined() const { return 0.5 * (dirichlet + stretch); }
 };
 MapDistortion measure_distortion(const Overlay& overlay, const std::vector<Vec2>& uv);
 

@@ -133,7 +133,8 @@ TEST(QuadLayout, pairs_every_triangle_and_stays_sound_through_improvement)
         ASSERT_TRUE(paired.ok() && *paired) << name;
         EXPECT_EQ(2 * complex.face_count(), triangles) << name;
         expect_sound(complex, 4, name + " paired");
-        improve_quads(complex, 6, context);
+        const std::vector<double> density(mesh.vertex_count(), 1.0);
+        improve_quads(complex, 6, {density, area(mesh) / 12.0}, context);
         expect_sound(complex, 4, name + " improved");
     }
 }
@@ -151,7 +152,8 @@ TEST(QuadLayout, improvement_lowers_distortion_and_leaves_few_extraordinary_vert
         return sum / complex.face_count();
     };
     const double before = mean_distortion();
-    improve_quads(complex, 60, context);
+    const std::vector<double> density(mesh.vertex_count(), 1.0);
+    improve_quads(complex, 60, {density, area(mesh) / 60.0}, context);
     EXPECT_LT(mean_distortion(), before);
     std::map<Index, int> valence;
     for (const auto& p : complex.paths())

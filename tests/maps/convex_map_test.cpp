@@ -166,7 +166,26 @@ TEST(ConvexMap, distortion_of_a_rectangle_is_the_mean_of_its_aspect_and_inverse)
         v.position.x *= 4.0;
     const auto map = map_to_polygon(overlay, unit_square(), MapLevel::uniform);
     ASSERT_TRUE(map);
-    EXPECT_NEAR(measure_distortion(overlay, map->uv).dirichlet, 0.5 * (4.0 + 0.25), 1e-12);
+    const MapDistortion d = measure_distortion(overlay, map->uv);
+    EXPECT_NEAR(d.dirichlet, 0.5 * (4.0 + 0.25), 1e-12);
+    EXPECT_NEAR(d.stretch, 0.5 * (4.0 + 0.25), 1e-12);
+}
+
+TEST(ConvexMap, a_limb_squeezed_into_a_patch_shows_in_the_stretch)
+{
+    // A tower pulled out of the middle of a flat sheet.
+    Overlay overlay = flat_square(9);
+    const auto flat = map_to_polygon(overlay, unit_square());
+    for (auto& v : overlay.vertices)
+        if (std::fabs(v.position.x - 0.5) < 0.2 && std::fabs(v.position.y - 0.5) < 0.2)
+            v.position.z = 3.0;
+    const auto tower = map_to_polygon(overlay, unit_square());
+    ASSERT_TRUE(flat && tower);
+    EXPECT_GT(measure_distortion(overlay, tower->uv).stretch, 3.0);
+    EXPECT_NEAR(measure_distortion(overlay, tower->uv).combined(),
+                0.5 * (measure_distortion(overlay, tower->uv).dirichlet +
+                       measure_distortion(overlay, tower->uv).stretch),
+                1e-15);
 }
 
 } // namespace
