@@ -174,13 +174,16 @@ Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOption
     if (!complex)
         return complex.error();
     straighten_triangles(*complex, context);
+    const auto metric = [&](const CarrierMesh& on) {
+        return SizeMetric{field.density, scaled_area(on.mesh, field.density) /
+                                             static_cast<double>(summary.target_patches)};
+    };
+    improve_triangles(*complex, metric(carrier), context);
     const auto finish = [&](PatchComplex& quads, CarrierMesh& on) -> Result<LayoutResult> {
         // Vertices that came with a split have no density of their own yet.
         if (on.mesh.vertex_count() != field.density.size())
             field = measure_size_field(on.mesh, curvature_scale * source.box().diagonal());
-        const SizeMetric metric{field.density, scaled_area(on.mesh, field.density) /
-                                                   static_cast<double>(summary.target_patches)};
-        improve_quads(quads, summary.target_patches, metric, context);
+        improve_quads(quads, summary.target_patches, metric(on), context);
         if (context.cancelled())
             return Context::cancelled_error("layout");
         Result<QuadDomain> domain = make_domain(quads, std::move(on));

@@ -26,26 +26,32 @@ constexpr Index min_faces = 3;
 // While there are more than this factor times the wanted quads, one quad less is worth this much.
 constexpr double count_slack = 1.1;
 constexpr double surplus_credit = 1.5;
-// Largest valence a change may make: the masks grow fast beyond (facts on the masks' norms).
-constexpr int max_valence = 6;
+// Largest valence a change may make in K: the masks grow fast beyond. In K_tri a vertex has half as
+// many edges again.
+constexpr int max_quad_valence = 6;
+constexpr int max_triangle_valence = 9;
 
 // The splines do not exist at vertices of degree two. They are worth this much to remove, so that
 // it is done by whatever change distorts least, and never made.
 constexpr double doublet_cost = 10.0;
 
-double valence_cost(int valence)
+// Penalty for the valence of a vertex between faces of three or four sides.
+double valence_cost(Index sides, int valence)
 {
-    if (valence == 2)
+    if (sides == 4 && valence == 2)
         return doublet_cost;
-    const double d = static_cast<double>(valence) - 4.0;
+    const double d = static_cast<double>(valence) - (sides == 3 ? 6.0 : 4.0);
     return valence_weight * d * d;
 }
 
-// The state of K while it is improved: distortion per face and valence per mesh vertex.
+// The state of K_tri or K while it is improved: energy per face and valence per mesh vertex.
 class Improver {
 public:
-    Improver(PatchComplex& complex, Index min_quads, const SizeMetric& metric, Context& context)
-        : complex_(complex), min_quads_(min_quads), metric_(metric), context_(context)
+    Improver(PatchComplex& complex, Index sides, Index min_quads, const SizeMetric& metric,
+             Context& context)
+        : complex_(complex), sides_(sides),
+          max_valence_(sides == 3 ? max_triangle_valence : max_quad_valence), min_quads_(min_quads),
+          metric_(metric), context_(context)
     {
         valence_.assign(complex.mesh().vertex_count(), 0);
         vertex_tried_.assign(complex.mesh().vertex_count(), 0);
@@ -59,21 +65,24 @@ public:
         for (int pass = 0; pass < max_passes && !context_.cancelled(); ++pass) {
             const QuadImprovement before = done_;
             rotate_edges();
-            remove_doublets(false);
-            collapse_quads();
-            rotate_edges();
+            if (sides_ == 4) {
+                remove_doublets(false);
+                collapse_quads();
+                rotate_edges();
+            }
             relocate_vertices();
             straighten_edges();
             if (before.rotations == done_.rotations && before.collapses == done_.collapses &&
                 before.doublets == done_.doublets && pass > 0)
                 break;
         }
-        if (!context_.cancelled())
+        if (sides_ == 4 && !context_.cancelled())
             remove_doublets(true);
         return done_;
     }
 
 private:
+    double cost(int valence) const { return valence_cost(sides_, valence); }
     double energy(Index f)
     {
         if (energy_.size() <= f)
@@ -155,6 +164,8 @@ private:
     bool alive(const Side& s) const { return complex_.paths()[s.path].alive; }
 
     PatchComplex& complex_;
+    Index sides_; // Of every face.
+    int max_valence_;
     Index min_quads_;
     const SizeMetric& metric_;
     Context& context_;
@@ -180,9 +191,8 @@ void Improver::remove_doublets(bool all)
             if (!border || border->size() != 4)
                 continue;
             const Index a = complex_.end(s), b = complex_.start(complex_.previous(s));
-            const double change = -doublet_cost + valence_cost(valence_[a] - 1) -
-                                  valence_cost(valence_[a]) + valence_cost(valence_[b] - 1) -
-                                  valence_cost(valence_[b]);
+            const double change = -doublet_cost + cost(valence_[a] - 1) - cost(valence_[a]) +
+                                  cost(valence_[b] - 1) - cost(valence_[b]);
             if (!attempt(faces, *border, {}, change)) {
                 if (!all)
                     continue;
@@ -206,25 +216,27 @@ void Improver::rotate_edges()
             continue;
         const Side s{p, false};
         const Index a = complex_.start(s), b = complex_.end(s);
-        if (valence_[a] < 3 || valence_[b] < 3)
+        const int least = sides_ == 3 ? 4 : 3;
+        if (valence_[a] < least || valence_[b] < least)
             continue;
         const std::vector<Index> faces{complex_.face_at(s), complex_.face_at({p, true})};
         const auto border = complex_.border(faces);
-        if (!border || border->size() != 6)
+        const Index n = 2 * sides_ - 2;
+        if (!border || border->size() != n)
             continue;
         Index ia = 0;
         while (complex_.start((*border)[ia]) != a)
             ++ia;
-        for (Index turn = 1; turn <= 2; ++turn) {
-            const Index ic = (ia + turn) % 6, id = (ia + turn + 3) % 6;
+        for (Index turn = 1; turn + 1 < sides_; ++turn) {
+            const Index ic = (ia + turn) % n, id = (ia + turn + sides_ - 1) % n;
             const Index c = complex_.start((*border)[ic]), d = complex_.start((*border)[id]);
-            if (valence_[c] + 1 > max_valence || valence_[d] + 1 > max_valence ||
+            if (valence_[c] + 1 > max_valence_ || valence_[d] + 1 > max_valence_ ||
                 adjacent((*border)[ic], d))
                 continue;
-            const double change = valence_cost(valence_[a] - 1) - valence_cost(valence_[a]) +
-                                  valence_cost(valence_[b] - 1) - valence_cost(valence_[b]) +
-                                  valence_cost(valence_[c] + 1) - valence_cost(valence_[c]) +
-                                  valence_cost(valence_[d] + 1) - valence_cost(valence_[d]);
+            const double change = cost(valence_[a] - 1) - cost(valence_[a]) +
+                                  cost(valence_[b] - 1) - cost(valence_[b]) +
+                                  cost(valence_[c] + 1) - cost(valence_[c]) +
+                                  cost(valence_[d] + 1) - cost(valence_[d]);
             if (attempt(faces, *border, {{ic, id}}, change)) {
                 --valence_[a], --valence_[b], ++valence_[c], ++valence_[d];
                 ++done_.rotations;
@@ -243,7 +255,7 @@ bool Improver::try_collapse(const Side& at_v)
     const Index w = complex_.end(complex_.next(at_v));
     const Index e0 = complex_.end(at_v), e1 = complex_.end(star[1]);
     if (n < 3 || valence_[e0] < 4 || valence_[e1] < 4 ||
-        valence_[w] + static_cast<int>(n) - 2 > max_valence || w == v)
+        valence_[w] + static_cast<int>(n) - 2 > max_valence_ || w == v)
         return false;
     std::vector<Index> faces;
     for (const Side& s : star)
@@ -263,10 +275,9 @@ bool Improver::try_collapse(const Side& at_v)
             return false;
         chords.emplace_back(iw, i);
     }
-    const double change =
-        -valence_cost(valence_[v]) + valence_cost(valence_[e0] - 1) - valence_cost(valence_[e0]) +
-        valence_cost(valence_[e1] - 1) - valence_cost(valence_[e1]) +
-        valence_cost(valence_[w] + static_cast<int>(n) - 2) - valence_cost(valence_[w]);
+    const double change = -cost(valence_[v]) + cost(valence_[e0] - 1) - cost(valence_[e0]) +
+                          cost(valence_[e1] - 1) - cost(valence_[e1]) +
+                          cost(valence_[w] + static_cast<int>(n) - 2) - cost(valence_[w]);
     const double credit = complex_.face_count() > count_slack * static_cast<double>(min_quads_)
                               ? surplus_credit
                               : 0.0;
@@ -307,7 +318,7 @@ void Improver::relocate_vertices()
         for (const Side& s : star)
             faces.push_back(complex_.face_at(s));
         const auto border = complex_.border(faces);
-        if (!border || border->size() != 2 * n)
+        if (!border || border->size() != (sides_ - 2) * n)
             continue;
         const Index v = complex_.start(found);
         if (!changed_since(faces, vertex_tried_[v]))
@@ -316,18 +327,21 @@ void Improver::relocate_vertices()
         const auto disk = complex_.mapped(*border);
         if (!disk)
             continue;
+        Vec2 middle;
+        for (const Index c : disk->overlay.corners)
+            middle = middle + (1.0 / static_cast<double>(border->size())) * disk->uv[c];
         Index center = invalid_index;
         double nearest = std::numeric_limits<double>::infinity();
         for (Index i = disk->overlay.boundary_count; i < disk->overlay.vertices.size(); ++i)
             if (disk->overlay.vertices[i].mesh_vertex != invalid_index &&
-                norm(disk->uv[i]) < nearest) {
-                nearest = norm(disk->uv[i]);
+                norm(disk->uv[i] - middle) < nearest) {
+                nearest = norm(disk->uv[i] - middle);
                 center = disk->overlay.vertices[i].mesh_vertex;
             }
         if (center == invalid_index)
             continue;
         std::vector<std::pair<Index, Index>> chords;
-        for (Index i = 0; i < 2 * n; ++i) {
+        for (Index i = 0; i < border->size(); ++i) {
             const Index c = complex_.start((*border)[i]);
             for (const Side& s : star)
                 if (complex_.end(s) == c)
@@ -355,13 +369,14 @@ void Improver::straighten_edges()
         const std::vector<Index> faces{complex_.paths()[p].left, complex_.paths()[p].right};
         if (!changed_since(faces, straightened_))
             continue;
+        const Index n = 2 * sides_ - 2;
         const auto border = complex_.border(faces);
-        if (!border || border->size() != 6)
+        if (!border || border->size() != n)
             continue;
         Index ia = 0;
         while (complex_.start((*border)[ia]) != complex_.paths()[p].geometry.a)
             ++ia;
-        attempt(faces, *border, {{ia, (ia + 3) % 6}}, 0.0);
+        attempt(faces, *border, {{ia, (ia + sides_ - 1) % n}}, 0.0);
     }
     straightened_ = begin;
 }
@@ -384,7 +399,8 @@ double face_energy(PatchComplex& complex, const std::vector<Side>& border, const
     const auto overlay = complex.overlay(border);
     if (!overlay)
         return infinity;
-    const auto map = map_to_polygon(*overlay, unit_square());
+    const bool quad = border.size() == 4;
+    const auto map = map_to_polygon(*overlay, quad ? unit_square() : regular_polygon(3));
     if (!map)
         return infinity;
     double size = 0.0;
@@ -398,7 +414,7 @@ double face_energy(PatchComplex& complex, const std::vector<Side>& border, const
         const Vec3 q = overlay->vertices[v[2]].position - overlay->vertices[v[0]].position;
         size += 0.5 * norm(cross(p, q)) * density * density;
     }
-    size /= metric.target_area;
+    size /= quad ? metric.target_area : 0.5 * metric.target_area;
     return measure_distortion(*overlay, map->uv).combined() * size * size;
 }
 
@@ -445,10 +461,16 @@ Result<bool> pair_triangles(PatchComplex& complex, Context& context)
     return true;
 }
 
+void improve_triangles(PatchComplex& complex, const SizeMetric& metric, Context& context)
+{
+    Improver(complex, 3, 0, metric, context).run();
+    complex.compact();
+}
+
 QuadImprovement improve_quads(PatchComplex& complex, Index min_quads, const SizeMetric& metric,
                               Context& context)
 {
-    const QuadImprovement done = Improver(complex, min_quads, metric, context).run();
+    const QuadImprovement done = Improver(complex, 4, min_quads, metric, context).run();
     complex.compact();
     return done;
 }

@@ -23,10 +23,16 @@ struct SizeMetric {
     double target_area = 1.0;
 };
 
-//! Energy of a patch: distortion times the square of its size over the target. The sum over all
-//! patches grows with distortion, with uneven sizes, and when fewer patches must cover the surface.
+//! Energy of a patch (a triangle of K_tri counts as half a patch): distortion times the square of
+//! its size over the target. The sum over all patches grows with distortion, with uneven sizes, and
+//! when fewer patches must cover the surface.
 double face_energy(PatchComplex& complex, const std::vector<PatchComplex::Side>& border,
                    const SizeMetric& metric);
+
+//! Improves K_tri before pairing: flips edges, moves vertices to the middle of their star and
+//! straightens edges, as long as that lowers the sum of energies and a penalty for valences other
+//! than six. Vertices of low valence would become vertices of degree two in K.
+void improve_triangles(PatchComplex& complex, const SizeMetric& metric, Context& context);
 
 struct QuadImprovement {
     Index rotations = 0, collapses = 0, doublets = 0, relocations = 0;
