@@ -24,8 +24,8 @@ struct FitOptions {
     DistanceRows rows = DistanceRows::tangent;
     bool robust = false; //!< Iteratively reweighted least squares (Huber) against outliers.
     double stall = 0.02; //!< Stop when a round lowers the rms error by less than this share.
-    //! Largest condition of the scaled normal matrix that is trusted (half the digits of a double are
-    //! left for the solution at 1e8); above it the rows are solved by QR.
+    //! Largest condition of the scaled normal matrix that is trusted (half the digits of a double
+    //! are left for the solution at 1e8); above it the rows are solved by QR.
     double condition_limit = 1e10;
 
     std::optional<Error> check() const;
