@@ -131,6 +131,9 @@ private:
     }
 
     void remove_doublets(bool all);
+    bool rotate_to_doublet(const Side& at_v, double limit);
+    double energy_after(const std::vector<Index>& faces, const std::vector<Side>& border,
+                        const std::vector<std::pair<Index, Index>>& chords);
     void rotate_edges();
     void collapse_quads();
     void relocate_vertices();
@@ -196,6 +199,10 @@ void Improver::remove_doublets(bool all)
             if (!attempt(faces, *border, {}, change)) {
                 if (!all)
                     continue;
+                if (rotate_to_doublet(s, energy_after(faces, *border, {}))) {
+                    changed = true;
+                    continue;
+                }
                 complex_.replace(faces, *border, {});
                 energy_.resize(complex_.faces().size(), -1.0);
                 energy_.back() = -1.0;
@@ -206,6 +213,74 @@ void Improver::remove_doublets(bool all)
             changed = true;
         }
     }
+}
+
+// By how much a change raises the energy of faces; the change is taken back.
+double Improver::energy_after(const std::vector<Index>& faces, const std::vector<Side>& border,
+                              const std::vector<std::pair<Index, Index>>& chords)
+{
+    double change = 0.0;
+    for (const Index f : faces)
+        change -= energy(f);
+    if (!complex_.replace(faces, border, chords))
+        return std::numeric_limits<double>::infinity();
+    const Index count = static_cast<Index>(complex_.faces().size());
+    for (Index f = count - complex_.new_face_count(); f < count; ++f)
+        change += face_energy(complex_, complex_.faces()[f].sides, metric_);
+    complex_.undo();
+    return change;
+}
+
+// Where merging the two quads at a vertex of degree two would squeeze a limb into one patch
+// (raising the energy by `limit`), an outer edge of the two is turned towards the vertex instead,
+// if that distorts less. Takes the best of the four edges.
+bool Improver::rotate_to_doublet(const Side& at_v, double limit)
+{
+    const Index v = complex_.start(at_v);
+    struct Turn {
+        Index path;
+        std::vector<Index> faces;
+        std::vector<Side> border;
+        Index from, to;
+    };
+    std::optional<Turn> best;
+    for (const Side& spoke :
+         {at_v, Side{complex_.previous(at_v).path, !complex_.previous(at_v).reversed}}) {
+        const Side first = complex_.next(spoke);
+        for (const Side& outer : {first, complex_.next(first)}) {
+            const Index a = complex_.start(outer), b = complex_.end(outer);
+            if (valence_[a] < 4 || valence_[b] < 4)
+                continue;
+            const std::vector<Index> faces{complex_.face_at(outer),
+                                           complex_.face_at({outer.path, !outer.reversed})};
+            const auto border = complex_.border(faces);
+            if (!border || border->size() != 6)
+                continue;
+            Index from = 0;
+            while (from < 6 && complex_.start((*border)[from]) != v)
+                ++from;
+            if (from == 6)
+                continue;
+            const Index to = (from + 3) % 6, target = complex_.start((*border)[to]);
+            if (valence_[target] >= max_valence_ || adjacent((*border)[from], target))
+                continue;
+            const double change = energy_after(faces, *border, {{from, to}});
+            if (change < limit) {
+                limit = change;
+                best = Turn{outer.path, faces, *border, from, to};
+            }
+        }
+    }
+    if (!best || !complex_.replace(best->faces, best->border, {{best->from, best->to}}))
+        return false;
+    energy_.resize(complex_.faces().size(), -1.0);
+    for (Index k = 1; k <= complex_.new_face_count(); ++k)
+        energy_[complex_.faces().size() - k] = -1.0;
+    const SurfacePath& gone = complex_.paths()[best->path].geometry;
+    --valence_[gone.a], --valence_[gone.b];
+    ++valence_[v], ++valence_[complex_.start(best->border[best->to])];
+    ++done_.rotations;
+    return true;
 }
 
 void Improver::rotate_edges()
