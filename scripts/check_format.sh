@@ -6,6 +6,4 @@ cd "$(dirname "$0")/.."
 
 mode=(--dry-run -Werror)
 [ "${1-}" = --fix ] && mode=(-i)
-find include src cli tests bench fuzz \( -name node_modules -prune \) -o \
-    \( -name '*.h' -o -name '*.cpp' \) -print0 2>/dev/null |
-    xargs -0 -r clang-format-14 "${mode[@]}"
+git ls-files -z '*.h' '*.cpp' | xargs -0 -r clang-format-14 "${mode[@]}"
