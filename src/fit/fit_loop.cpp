@@ -37,6 +37,15 @@ constexpr double huber = 1.345;
 constexpr double mad_to_deviation = 1.4826;
 //! Distances below this share of the box are rounding, not noise, and get full weight.
 constexpr double least_deviation = 1e-12;
+//! Times a round is solved again because it folds the surface somewhere: first these quads are
+//! held, then damped by 1, 10 and 100; what folds even then is shortened.
+constexpr int max_answers = 4;
+//! Moves that fold are halved three times where they do before they are left out, with more and
+//! more neighbours.
+constexpr int halvings = 3;
+constexpr int max_cuts = 8;
+//! Smallest share of a point-distance step that is tried.
+constexpr double least_step = 0.125;
 //! An accepted round may raise the objective by rounding only.
 constexpr double rounding = 1e-12;
 //! A place counts with at least this share of the mean area per parameter, so that collapsed places
@@ -79,7 +88,7 @@ double speed_at(const SurfacePoint& s, double mean)
 FitLoop::FitLoop(const SplineNetwork& network, const ReducedNetwork& reduced,
                  const FitOptions& options, Context& context)
     : network_(network), reduced_(reduced), options_(options), context_(context),
-      system_(reduced, context), guard_(0, {}, {})
+      system_(reduced, context), guard_(0, {}, {}), response_(network.complex, reduced)
 {
     // Each of the 27 multiplications of a 3 x 3 block product, half of them by symmetry.
     coupled_affordable_ = 0.5 * 27.0 * system_.factor_work() <= coupled_work_limit;
@@ -120,15 +129,23 @@ void FitLoop::weigh_by_surface(const State& state)
             std::sqrt(std::max(speed[k], least_share * mean) * mean) / (places * 16.0 * area);
 }
 
-void FitLoop::set_fairness(double fairness)
+void FitLoop::lower_fairness(double share)
 {
-    round_fairness_ = fairness;
-    fairness_.resize(quad_share_.size());
-    for (std::size_t q = 0; q < fairness_.size(); ++q)
-        fairness_[q] = std::max(fairness, floor_[q]) * quad_share_[q];
+    last_level_ = level_;
+    round_fairness_ = std::max(options_.fairness_floor, share * round_fairness_);
+    for (std::size_t q = 0; q < level_.size(); ++q)
+        level_[q] = std::max(floor_[q], share * level_[q]);
+    apply_fairness();
 }
 
-std::vector<FitRow> FitLoop::rows_at(const State& state) const
+void FitLoop::apply_fairness()
+{
+    fairness_.resize(level_.size());
+    for (std::size_t q = 0; q < fairness_.size(); ++q)
+        fairness_[q] = level_[q] * quad_share_[q];
+}
+
+std::vector<FitRow> FitLoop::rows_at(const State& state, const std::vector<double>& factors) const
 {
     const SurfaceWalk walk(network_.complex, state.surface);
     std::vector<FitRow> rows(points.size());
@@ -139,7 +156,7 @@ std::vector<FitRow> FitLoop::rows_at(const State& state) const
         row.piece = 16 * d.quad + 4 * u.piece + v.piece;
         row.s = u.t;
         row.t = v.t;
-        row.weight = row_weights_[i];
+        row.weight = row_weights_[i] * factors[i];
         if (state.feet.empty()) {
             row.residual = points[i];
             continue;
@@ -147,7 +164,7 @@ std::vector<FitRow> FitLoop::rows_at(const State& state) const
         const SurfacePoint& s = state.feet[i].surface;
         row.residual = points[i] - s.position;
         // The distance to a rim grows in every direction across it.
-        if (!walk.on_sharp_edge(d))
+        if (!response_.held(d.quad) && !walk.on_sharp_edge(d))
             row.normal = normalized(cross(s.du, s.dv));
     }
     return rows;
@@ -185,11 +202,31 @@ FitLoop::State FitLoop::moved(const State& state, const std::vector<Vec3>& move)
     for (std::size_t i = 0; i < move.size(); ++i)
         next.unknowns[i] += move[i];
     next.surface = SplineSurface(network_, reduced_.expand(next.unknowns));
-    next.quad_energy = quad_energies(next.surface);
     next.folds = guard_.folds(next.surface, context_);
-    if (!context_.cancelled())
-        next.feet = correct_parameters(network_.complex, next.surface, points, where, context_);
     return next;
+}
+
+FitLoop::State FitLoop::moved_without_folds(const State& state, std::vector<Vec3> move) const
+{
+    State next = moved(state, move);
+    for (int cut = 1; cut <= max_cuts; ++cut) {
+        std::vector<Index> folded = more_folded(state.folds, next.folds);
+        if (folded.empty())
+            return next;
+        // Halves first; then nothing moves there, nor, from time to time, around it.
+        const int stops = cut - halvings;
+        for (int ring = 1; ring < stops; ++ring)
+            folded = response_.with_neighbours(folded);
+        response_.shorten(folded, stops > 0 ? 0.0 : 0.5, move);
+        next = moved(state, move);
+    }
+    return more_folded(state.folds, next.folds).empty() ? next : moved(state, {});
+}
+
+void FitLoop::find_feet(State& state) const
+{
+    state.quad_energy = quad_energies(state.surface);
+    state.feet = correct_parameters(network_.complex, state.surface, points, where, context_);
 }
 
 NormalSystem::Solution FitLoop::solve(const State& state, const std::vector<FitRow>& rows,
@@ -201,6 +238,7 @@ NormalSystem::Solution FitLoop::solve(const State& state, const std::vector<FitR
     problem.groups = &groups;
     problem.bezier = &state.surface.bezier();
     problem.fairness = &fairness_;
+    problem.damping = response_.damping();
     problem.mu = mu;
     NormalSystem::Solution solution = system_.solve(problem, options_.condition_limit, context_);
     if (!solution.ok && mu >= 1.0 && !context_.cancelled()) {
@@ -215,13 +253,15 @@ NormalSystem::Solution FitLoop::solve(const State& state, const std::vector<FitR
 Status FitLoop::first_round(State& state)
 {
     state.unknowns.assign(reduced_.free_count(), Vec3{});
-    const NormalSystem::Solution solution = solve(state, rows_at(state), 1.0);
+    const std::vector<FitRow> rows = rows_at(state, std::vector<double>(points.size(), 1.0));
+    const NormalSystem::Solution solution = solve(state, rows, 1.0);
     if (context_.cancelled())
         return Context::cancelled_error("fit");
     if (!solution.ok)
         return Error{ErrorCode::fit_failed, "the first least-squares system could not be solved",
                      invalid_index};
     state = moved(state, solution.move);
+    find_feet(state);
     if (context_.cancelled())
         return Context::cancelled_error("fit");
     return std::nullopt;
@@ -229,42 +269,49 @@ Status FitLoop::first_round(State& state)
 
 Status FitLoop::next_round(State& state, double& mu, bool& stuck)
 {
-    const double last_fairness = round_fairness_;
-    set_fairness(std::max(round_floor_, fairness_decay * last_fairness));
+    lower_fairness(fairness_decay);
+    response_.begin_round();
     const std::vector<double> factors = robust_factors(state);
-    std::vector<FitRow> rows = rows_at(state);
-    for (std::size_t i = 0; i < rows.size(); ++i)
-        rows[i].weight *= factors[i];
-    for (;;) {
-        const double before = objective(state, factors);
-        const NormalSystem::Solution solution = solve(state, rows, mu);
+    for (int answers = 0;;) {
+        NormalSystem::Solution solution = solve(state, rows_at(state, factors), mu);
         if (context_.cancelled())
             return Context::cancelled_error("fit");
-        bool folded = false;
-        if (solution.ok) {
-            State next = moved(state, solution.move);
-            if (context_.cancelled())
-                return Context::cancelled_error("fit");
-            folded = next.folds > state.folds;
-            if (!folded && objective(next, factors) <= before * (1.0 + rounding)) {
-                state = std::move(next);
-                return std::nullopt;
-            }
-        } else if (mu >= 1.0) {
+        if (!solution.ok && mu >= 1.0)
             return Error{ErrorCode::fit_failed,
                          "the least-squares system of round " +
                              std::to_string(summary.rounds.size() + 1) + " could not be solved",
                          invalid_index};
+        if (solution.ok) {
+            State next = moved(state, solution.move);
+            const std::vector<Index> folded = more_folded(state.folds, next.folds);
+            if (!folded.empty() && answers++ < max_answers) {
+                // Fairness that falls further is what most often folds a surface.
+                for (const Index q : response_.respond(folded))
+                    floor_[q] = level_[q] = std::max(floor_[q], last_level_[q]);
+                apply_fairness();
+                continue;
+            }
+            for (double share = 1.0; share >= least_step; share *= 0.5) {
+                if (!folded.empty() || share < 1.0)
+                    next = moved_without_folds(state, solution.move);
+                find_feet(next);
+                if (context_.cancelled())
+                    return Context::cancelled_error("fit");
+                if (objective(next, factors) <= objective(state, factors) * (1.0 + rounding)) {
+                    state = std::move(next);
+                    return std::nullopt;
+                }
+                if (mu < 1.0)
+                    break;
+                for (Vec3& m : solution.move)
+                    m *= 0.5;
+            }
         }
-        if (folded && round_fairness_ < last_fairness) {
-            // Less fairness than before is what folds a surface; hold it from here on.
-            set_fairness(last_fairness);
-            round_floor_ = last_fairness;
-        } else if (mu < 1.0) {
+        if (mu < 1.0) {
             mu = std::min(1.0, mu / mu_factor);
         } else {
-            // Point-distance rows lower the objective whatever the feet do, so only rounding or
-            // folds are left.
+            // Point-distance rows lower the objective whatever the feet do, so only rounding is
+            // left.
             stuck = true;
             return std::nullopt;
         }
@@ -311,15 +358,17 @@ Status FitLoop::run()
     double start = now();
     State state;
     weigh_by_samples();
-    set_fairness(options_.fairness);
-    round_floor_ = options_.fairness_floor;
+    round_fairness_ = options_.fairness;
+    level_.assign(floor_.size(), options_.fairness);
+    apply_fairness();
     guard_ = FoldGuard(network_.complex.quad_count(), normals, where);
     if (const auto error = first_round(state))
         return error;
     weigh_by_surface(state);
-    if (!guard_.ready())
+    if (!guard_.ready()) {
         guard_.set_reference(state.surface);
-    state.folds = guard_.folds(state.surface, context_);
+        state.folds = guard_.folds(state.surface, context_);
+    }
     record(state, 1.0, start);
 
     const bool tangent = options_.rows == DistanceRows::tangent && coupled_affordable_;
@@ -332,10 +381,12 @@ Status FitLoop::run()
         if (const auto error = next_round(state, mu, stuck))
             return error;
         record(state, mu, start);
-        const bool schedule_done = (!tangent || mu <= mu_floor) && round_fairness_ <= round_floor_;
+        const bool schedule_done =
+            (!tangent || mu <= mu_floor) && round_fairness_ <= options_.fairness_floor;
         const double after = summary.rounds.back().rms;
-        if (stuck || (round + 1 >= least_rounds && schedule_done &&
-                      after >= (1.0 - options_.stall) * before)) {
+        // A stuck round leaves the surface as it is; with less fairness the next may do more.
+        if (round + 1 >= least_rounds &&
+            (stuck || (schedule_done && after >= (1.0 - options_.stall) * before))) {
             summary.termination = "stalled";
             break;
         }

@@ -3,6 +3,7 @@
 
 #include "bot2nurbs/fit_network.h"
 #include "fit/fold_guard.h"
+#include "fit/fold_response.h"
 #include "fit/foot_point.h"
 #include "fit/normal_system.h"
 
@@ -36,7 +37,7 @@ private:
         SplineSurface surface;
         std::vector<FootPoint> feet;
         std::vector<double> quad_energy; //!< Thin-plate energy, unweighted.
-        Index folds = 0;
+        std::vector<Index> folds;        //!< Per quad.
     };
 
     Status first_round(State& state);
@@ -44,9 +45,14 @@ private:
     Status next_round(State& state, double& mu, bool& stuck);
     //! Solves from `state` with the given rows. Falls back to QR where that is the answer.
     NormalSystem::Solution solve(const State& state, const std::vector<FitRow>& rows, double mu);
-    //! The state after moving the unknowns; no feet when cancelled.
+    //! The state after moving the unknowns, without feet.
     State moved(const State& state, const std::vector<Vec3>& move) const;
-    std::vector<FitRow> rows_at(const State& state) const;
+    //! Like `moved`, after shortening the move where it folds, as little as it takes.
+    State moved_without_folds(const State& state, std::vector<Vec3> move) const;
+    //! Adds the feet; none when cancelled.
+    void find_feet(State& state) const;
+    //! Rows of all samples; of those on held quads point-distance rows.
+    std::vector<FitRow> rows_at(const State& state, const std::vector<double>& factors) const;
     //! Huber weights from the distances; all one unless robust.
     std::vector<double> robust_factors(const State& state) const;
     double objective(const State& state, const std::vector<double>& factors) const;
@@ -56,7 +62,9 @@ private:
     //! the energy is measured. Weights by area alone leave the largest errors at extraordinary
     //! vertices, where parameters crowd.
     void weigh_by_surface(const State& state);
-    void set_fairness(double fairness);
+    //! Fairness of all quads `share` times the last round's, but not below their floors.
+    void lower_fairness(double share);
+    void apply_fairness();
     void record(const State& state, double mu, double start);
 
     const SplineNetwork& network_;
@@ -67,10 +75,12 @@ private:
     std::vector<double> row_weights_; //!< Per sample.
     std::vector<double> quad_share_;  //!< Per quad: its rows' share of the weight, over 16.
     std::vector<double> floor_;       //!< Per quad: least fairness.
+    std::vector<double> level_;       //!< Per quad: this round's fairness.
+    std::vector<double> last_level_;  //!< Per quad: the fairness of the round before.
     std::vector<double> fairness_;    //!< Per quad: this round's factor of its energy.
-    double round_fairness_ = 0.0;
-    double round_floor_ = 0.0; //!< Rises above the option when lower fairness folded the surface.
+    double round_fairness_ = 0.0;     //!< Of the quads without a floor of their own.
     FoldGuard guard_;
+    FoldResponse response_;
     bool coupled_affordable_ = true;
 };
 

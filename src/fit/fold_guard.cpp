@@ -15,7 +15,7 @@ constexpr double places[3] = {0.02, 0.5, 0.98};
 //! Unit normals whose mean is shorter than this span more than about 120 degrees; no direction
 //! stands for such a piece.
 constexpr double clear_mean = 0.5;
-constexpr std::size_t chunk_pieces = 256;
+constexpr std::size_t chunk_quads = 16;
 
 template <class Visit> void visit_places(const SplineSurface& surface, Index piece, Visit visit)
 {
@@ -60,21 +60,19 @@ void FoldGuard::set_reference(const SplineSurface& surface)
     }
 }
 
-Index FoldGuard::folds(const SplineSurface& surface, const Context& context) const
+std::vector<Index> FoldGuard::folds(const SplineSurface& surface, const Context& context) const
 {
-    std::vector<Index> folds((reference_.size() + chunk_pieces - 1) / chunk_pieces, 0);
-    for_each_chunk(
-        context, reference_.size(), chunk_pieces, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t p = begin; p < end; ++p)
-                if (!(reference_[p] == Vec3{}))
-                    visit_places(surface, static_cast<Index>(p), [&](const Vec3& normal) {
-                        folds[begin / chunk_pieces] += dot(normal, reference_[p]) < 0.0;
-                    });
-        });
-    Index sum = 0;
-    for (const Index f : folds)
-        sum += f;
-    return sum;
+    std::vector<Index> folds(surface.patch_count(), 0);
+    if (!ready())
+        return folds;
+    for_each_chunk(context, folds.size(), chunk_quads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin * pieces_per_quad; p < end * pieces_per_quad; ++p)
+            if (!(reference_[p] == Vec3{}))
+                visit_places(surface, static_cast<Index>(p), [&](const Vec3& normal) {
+                    folds[p / pieces_per_quad] += dot(normal, reference_[p]) < 0.0;
+                });
+    });
+    return folds;
 }
 
 } // namespace bot2nurbs

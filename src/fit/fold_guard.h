@@ -21,9 +21,9 @@ public:
     bool ready() const { return !reference_.empty(); }
     //! Takes the reference normals from a surface.
     void set_reference(const SplineSurface& surface);
-    //! Places of a 3 x 3 grid on every piece whose normal turns away from the reference of the
-    //! piece; pieces without a clear reference do not count. 0 when not ready.
-    Index folds(const SplineSurface& surface, const Context& context) const;
+    //! Per quad: places of a 3 x 3 grid on every piece whose normal turns away from the reference
+    //! of the piece; pieces without a clear reference do not count. All zero when not ready.
+    std::vector<Index> folds(const SplineSurface& surface, const Context& context) const;
 
 private:
     std::vector<Vec3> reference_; //!< Per piece; zero: none.

@@ -265,12 +265,29 @@ bool NormalSystem::assemble(const RoundProblem& problem, bool coupled, const Con
     return true;
 }
 
+void NormalSystem::add_damping(const std::vector<double>& damping, int blocks)
+{
+    for (std::size_t i = 0; i < place_.size(); ++i) {
+        // The diagonal is the last entry of its column.
+        double* d = &value_[static_cast<std::size_t>(column_[place_[i] + 1] - 1) * blocks];
+        if (blocks == 1) {
+            d[0] += damping[i] * d[0];
+            continue;
+        }
+        const double added = damping[i] * (d[0] + d[3] + d[5]) / 3.0;
+        for (const int k : {0, 3, 5})
+            d[k] += added;
+    }
+}
+
 NormalSystem::Solution NormalSystem::solve(const RoundProblem& problem, double condition_limit,
                                            const Context& context)
 {
     const bool coupled = problem.mu < 1.0;
     if (!assemble(problem, coupled, context))
         return {};
+    if (problem.damping)
+        add_damping(*problem.damping, coupled ? 6 : 1);
     return coupled ? solve_coupled(condition_limit, context)
                    : solve_decoupled(condition_limit, context);
 }

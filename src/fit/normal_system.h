@@ -30,12 +30,15 @@ RowsByPiece group_by_piece(const std::vector<FitRow>& rows, Index piece_count);
 //!
 //! Over moves d of the free unknowns it minimises
 //!   sum_i w_i [(1 - mu) (n_i . (r_i - d_i))^2 + mu |r_i - d_i|^2] + sum_q f_q E_q(x + d)
-//! with d_i the surface's move at row i and E_q the exact thin-plate energy of quad q.
+//! with d_i the surface's move at row i and E_q the exact thin-plate energy of quad q. Damping adds
+//! to every unknown's diagonal (the mean of its three) that many times itself: it shortens the step
+//! and leaves the gradient alone, so that it does not change what the rounds converge to.
 struct RoundProblem {
     const std::vector<FitRow>* rows = nullptr;
     const RowsByPiece* groups = nullptr;
     const std::vector<Vec3>* bezier = nullptr;     //!< 169 per quad; empty: all zero.
     const std::vector<double>* fairness = nullptr; //!< f_q.
+    const std::vector<double>* damping = nullptr;  //!< Per free unknown; null: none.
     double mu = 1.0;                               //!< 1: point-distance rows.
 };
 
@@ -64,6 +67,7 @@ public:
 
 private:
     bool assemble(const RoundProblem& problem, bool coupled, const Context& context);
+    void add_damping(const std::vector<double>& damping, int blocks);
     Solution solve_decoupled(double condition_limit, const Context& context);
     Solution solve_coupled(double condition_limit, const Context& context);
     //! Solves x, y and z each with the factor of the decoupled matrix.
