@@ -3,7 +3,9 @@
 
 #include "bot2nurbs/manifold_mesh.h"
 
+#include <array>
 #include <memory>
+#include <vector>
 
 namespace bot2nurbs {
 
@@ -14,6 +16,9 @@ namespace bot2nurbs {
 class ClosestPoint {
 public:
     explicit ClosestPoint(const ManifoldMesh& mesh);
+    //! Over triangles that need not be joined.
+    ClosestPoint(const std::vector<Vec3>& positions,
+                 const std::vector<std::array<Index, 3>>& triangles);
 
     struct Hit {
         SourcePoint where; //!< where.face is invalid_index when nothing lies within the limit.
@@ -25,8 +30,13 @@ public:
     Hit query(const Vec3& p) const;
     //! The closest point at most `distance_limit` away. Faster the smaller the limit.
     Hit query(const Vec3& p, double distance_limit) const;
+    //! As query(p), to the bit. Faster the closer p is to the face `near`, such as the one hit for
+    //! a neighbour of p; invalid_index stands for none.
+    Hit query_near(const Vec3& p, Index near) const;
 
 private:
+    void search(const Vec3& p, double best, Hit& hit) const;
+
     struct Tree;
     std::shared_ptr<const Tree> tree_;
 };

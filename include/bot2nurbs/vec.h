@@ -122,10 +122,12 @@ struct Box3 {
     Vec3 min{INFINITY, INFINITY, INFINITY};
     Vec3 max{-INFINITY, -INFINITY, -INFINITY};
 
+    //! Coordinates that are not numbers are ignored.
     void add(const Vec3& p)
     {
-        min = {std::fmin(min.x, p.x), std::fmin(min.y, p.y), std::fmin(min.z, p.z)};
-        max = {std::fmax(max.x, p.x), std::fmax(max.y, p.y), std::fmax(max.z, p.z)};
+        // Comparisons become single instructions, which fmin and fmax do not.
+        min = {p.x < min.x ? p.x : min.x, p.y < min.y ? p.y : min.y, p.z < min.z ? p.z : min.z};
+        max = {p.x > max.x ? p.x : max.x, p.y > max.y ? p.y : max.y, p.z > max.z ? p.z : max.z};
     }
     bool empty() const { return !(min.x <= max.x); }
     Vec3 center() const { return 0.5 * (min + max); }

@@ -113,7 +113,8 @@ std::vector<Place> surface_places(const SplineSurface& surface)
     return places;
 }
 
-//! Statistics of distance(place) over all places; the patch of the worst place to `worst_patch`.
+//! Statistics of distance(position, near) over all places, where `near` is what the last place of a
+//! chunk left for the next; the patch of the worst place to `worst_patch`.
 template <class Distance> bool measure(const std::vector<Place>& places, const Context& context,
                                        const Distance& distance, DistanceStatistics& statistics,
                                        Index& worst_patch)
@@ -121,8 +122,9 @@ template <class Distance> bool measure(const std::vector<Place>& places, const C
     std::vector<double> distances(places.size());
     if (!for_each_chunk(context, places.size(), chunk_places,
                         [&](std::size_t begin, std::size_t end) {
+                            Index near = invalid_index;
                             for (std::size_t i = begin; i < end; ++i)
-                                distances[i] = distance(places[i].position);
+                                distances[i] = distance(places[i].position, near);
                         }))
         return false;
     double sum = 0.0, weight = 0.0;
@@ -150,16 +152,21 @@ Result<Deviation> measure_deviation(const ManifoldMesh& source, const QuadComple
     Deviation deviation;
     Index ignored = invalid_index;
     const SurfaceLocator locator(complex, surface, seed_cells);
-    if (context.cancelled() || !measure(
-                                   source_places(source), context,
-                                   [&](const Vec3& p) { return locator.closest(p).distance; },
-                                   deviation.source_to_surface, ignored))
-        return Context::cancelled_error("deviation");
-    const ClosestPoint mesh(source);
     if (context.cancelled() ||
         !measure(
-            surface_places(surface), context, [&](const Vec3& p) { return mesh.query(p).distance; },
-            deviation.surface_to_source, deviation.worst_patch))
+            source_places(source), context,
+            [&](const Vec3& p, Index& near) { return locator.closest(p, near).distance; },
+            deviation.source_to_surface, ignored))
+        return Context::cancelled_error("deviation");
+    const ClosestPoint mesh(source);
+    if (context.cancelled() || !measure(
+                                   surface_places(surface), context,
+                                   [&](const Vec3& p, Index& near) {
+                                       const ClosestPoint::Hit hit = mesh.query_near(p, near);
+                                       near = hit.where.face;
+                                       return hit.distance;
+                                   },
+                                   deviation.surface_to_source, deviation.worst_patch))
         return Context::cancelled_error("deviation");
     return deviation;
 }

@@ -3,14 +3,12 @@
 
 #include "spline/bernstein.h"
 
-#include <cassert>
-
 namespace bot2nurbs {
 
 namespace {
 
 //! Per patch its own grid of vertices: closest-point queries do not need them joined.
-ManifoldMesh tessellate(const SplineSurface& surface, Index side)
+ClosestPoint tessellate(const SplineSurface& surface, Index side)
 {
     const Index row = side + 1;
     std::vector<Vec3> positions;
@@ -30,9 +28,7 @@ ManifoldMesh tessellate(const SplineSurface& surface, Index side)
                 triangles.push_back({a, a + row + 1, a + 1});
             }
     }
-    auto mesh = ManifoldMesh::build(std::move(positions), std::move(triangles));
-    assert(mesh.ok());
-    return mesh ? std::move(*mesh) : ManifoldMesh{};
+    return ClosestPoint(positions, triangles);
 }
 
 } // namespace
@@ -56,7 +52,15 @@ DomainPoint SurfaceLocator::place(const SourcePoint& where) const
 
 FootPoint SurfaceLocator::closest(const Vec3& p) const
 {
-    return walk_.descend(p, place(tree_.query(p).where));
+    Index near = invalid_index;
+    return closest(p, near);
+}
+
+FootPoint SurfaceLocator::closest(const Vec3& p, Index& near) const
+{
+    const SourcePoint where = tree_.query_near(p, near).where;
+    near = where.face;
+    return walk_.descend(p, place(where));
 }
 
 std::optional<FootPoint> SurfaceLocator::closest_within(const Vec3& p, double limit) const

@@ -29,6 +29,24 @@ void add(Box3& box, const Box3& other)
     box.add(other.max);
 }
 
+//! An item with its box; kept together and moved, as the tree is made faster from what lies side
+//! by side in memory.
+struct Item {
+    Box3 box;
+    Index number;
+};
+
+//! The boxes around some items and around the centres of their boxes.
+struct Bounds {
+    Box3 items, centers;
+
+    void add(const Item& item)
+    {
+        bot2nurbs::add(items, item.box);
+        centers.add(item.box.center());
+    }
+};
+
 struct Split {
     int axis = -1; //!< -1: none.
     int bin = 0;   //!< Items in bins below go to the first child.
@@ -43,11 +61,8 @@ struct Split {
 
 //! The split with the least sum of (area x items) of both sides over the bins of the longest axis
 //! of the box centres.
-Split find_split(const std::vector<Box3>& boxes, const Index* first, const Index* last)
+Split find_split(const Item* first, const Item* last, const Box3& centers)
 {
-    Box3 centers;
-    for (const Index* i = first; i != last; ++i)
-        centers.add(boxes[*i].center());
     const Vec3 extent = centers.max - centers.min;
     Split split;
     split.axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);
@@ -57,9 +72,9 @@ Split find_split(const std::vector<Box3>& boxes, const Index* first, const Index
         return {};
     std::array<Box3, bin_count> box;
     std::array<Index, bin_count> count{};
-    for (const Index* i = first; i != last; ++i) {
-        const int b = split.bin_of(boxes[*i]);
-        add(box[b], boxes[*i]);
+    for (const Item* i = first; i != last; ++i) {
+        const int b = split.bin_of(i->box);
+        add(box[b], i->box);
         ++count[b];
     }
     std::array<double, bin_count> right_cost{};
@@ -92,55 +107,66 @@ BoxTree::BoxTree(const std::vector<Box3>& boxes)
     const Index n = static_cast<Index>(boxes.size());
     if (n == 0)
         return;
-    items_.resize(n);
-    for (Index i = 0; i < n; ++i)
-        items_[i] = i;
-    nodes_.reserve(n);
     struct Task {
         Index node, first, count;
         int depth;
+        Bounds bounds;
     };
-    std::vector<Task> tasks{{0, 0, n, 0}};
+    Task root{0, 0, n, 0, {}};
+    std::vector<Item> items(n), moved(n);
+    for (Index i = 0; i < n; ++i) {
+        items[i] = {boxes[i], i};
+        root.bounds.add(items[i]);
+    }
+    items_.resize(n);
+    nodes_.reserve(n);
     nodes_.emplace_back();
-    std::vector<Index> scratch(n);
+    std::vector<Task> tasks{root};
     while (!tasks.empty()) {
         const Task task = tasks.back();
         tasks.pop_back();
-        Index* const first = items_.data() + task.first;
-        Index* const last = first + task.count;
-        Box3 box;
-        for (const Index* i = first; i != last; ++i)
-            add(box, boxes[*i]);
-        nodes_[task.node].min = box.min;
-        nodes_[task.node].max = box.max;
+        Item* const first = items.data() + task.first;
+        Item* const last = first + task.count;
+        nodes_[task.node].min = task.bounds.items.min;
+        nodes_[task.node].max = task.bounds.items.max;
         if (task.count <= leaf_items) {
-            std::sort(first, last);
+            // Partitions are stable, so items of a leaf are in the order of their numbers.
+            for (Index i = 0; i < task.count; ++i)
+                items_[task.first + i] = first[i].number;
             nodes_[task.node].first = task.first;
             nodes_[task.node].count = task.count;
             continue;
         }
+        Bounds left_bounds, right_bounds;
         Index left = task.count / 2;
-        const Split split =
-            task.depth < surface_area_depth ? find_split(boxes, first, last) : Split{};
+        const Split split = task.depth < surface_area_depth
+                                ? find_split(first, last, task.bounds.centers)
+                                : Split{};
         if (split.axis >= 0) {
-            // A stable partition: the order of the items does not depend on the library.
-            Index kept = 0, moved = 0;
-            for (const Index* i = first; i != last; ++i) {
-                if (split.bin_of(boxes[*i]) < split.bin)
+            Index kept = 0, gone = 0;
+            for (const Item* i = first; i != last; ++i) {
+                if (split.bin_of(i->box) < split.bin) {
+                    left_bounds.add(*i);
                     first[kept++] = *i;
-                else
-                    scratch[moved++] = *i;
+                } else {
+                    right_bounds.add(*i);
+                    moved[gone++] = *i;
+                }
             }
-            std::copy(scratch.begin(), scratch.begin() + moved, first + kept);
+            std::copy(moved.begin(), moved.begin() + gone, first + kept);
             left = kept;
+        } else {
+            for (Index i = 0; i < task.count; ++i)
+                (i < left ? left_bounds : right_bounds).add(first[i]);
         }
         const Index child = static_cast<Index>(nodes_.size());
         nodes_[task.node].first = child;
         nodes_[task.node].count = 0;
         nodes_.emplace_back();
         nodes_.emplace_back();
-        tasks.push_back({child + 1, task.first + left, task.count - left, task.depth + 1});
-        tasks.push_back({child, task.first, left, task.depth + 1});
+        tasks.push_back(
+            {child + 1, task.first + left, task.count - left, task.depth + 1, right_bounds});
+        tasks.push_back({child, task.first, left, task.depth + 1, left_bounds});
     }
 }
 

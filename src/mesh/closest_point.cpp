@@ -110,6 +110,21 @@ std::array<double, 3> closest_on_thin_triangle(const Vec3& p, const Corners& t)
     return best;
 }
 
+//! Makes the triangle's closest point the hit if it is closer than `best`, or as close and its face
+//! comes first.
+void offer(const Vec3& p, const Corners& t, double& best, ClosestPoint::Hit& hit)
+{
+    const std::array<double, 3> bary =
+        t.thin ? closest_on_thin_triangle(p, t) : closest_on_triangle(p, t);
+    const Vec3 q = combine(t, bary);
+    const double d = norm_squared(q - p);
+    if (d < best || (d == best && t.face < hit.where.face)) {
+        best = d;
+        hit.where = {t.face, bary};
+        hit.position = q;
+    }
+}
+
 double box_distance_squared(const BoxTree::Node& box, const Vec3& p)
 {
     const double x = std::max(0.0, std::max(box.min.x - p.x, p.x - box.max.x));
@@ -123,20 +138,29 @@ double box_distance_squared(const BoxTree::Node& box, const Vec3& p)
 struct ClosestPoint::Tree {
     BoxTree boxes;
     std::vector<Corners> triangles; //!< In the order of boxes.items().
+    std::vector<Index> place;       //!< Of every face, in triangles.
 };
 
 ClosestPoint::ClosestPoint(const ManifoldMesh& mesh)
+    : ClosestPoint(mesh.positions(), mesh.triangles())
 {
-    std::vector<Box3> boxes(mesh.face_count());
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        for (const Index v : mesh.triangle(f))
-            boxes[f].add(mesh.position(v));
+}
+
+ClosestPoint::ClosestPoint(const std::vector<Vec3>& positions,
+                           const std::vector<std::array<Index, 3>>& triangles)
+{
+    std::vector<Box3> boxes(triangles.size());
+    for (std::size_t f = 0; f < triangles.size(); ++f)
+        for (const Index v : triangles[f])
+            boxes[f].add(positions[v]);
     auto tree = std::make_shared<Tree>();
     tree->boxes = BoxTree(boxes);
-    tree->triangles.reserve(boxes.size());
+    tree->triangles.reserve(triangles.size());
+    tree->place.resize(triangles.size());
     for (const Index f : tree->boxes.items()) {
-        const auto& t = mesh.triangle(f);
-        Corners c{mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2]), f, false};
+        tree->place[f] = static_cast<Index>(tree->triangles.size());
+        const auto& t = triangles[f];
+        Corners c{positions[t[0]], positions[t[1]], positions[t[2]], f, false};
         const double longest =
             std::max({norm_squared(c.b - c.a), norm_squared(c.c - c.b), norm_squared(c.a - c.c)});
         c.thin = !(norm(cross(c.b - c.a, c.c - c.a)) > thin_sine * longest);
@@ -154,10 +178,27 @@ ClosestPoint::Hit ClosestPoint::query(const Vec3& p, double distance_limit) cons
 {
     Hit hit;
     hit.distance = INFINITY;
+    if (distance_limit >= 0.0)
+        search(p, distance_limit * distance_limit, hit);
+    return hit;
+}
+
+ClosestPoint::Hit ClosestPoint::query_near(const Vec3& p, Index near) const
+{
+    Hit hit;
+    hit.distance = INFINITY;
+    double best = INFINITY;
+    if (near < tree_->place.size())
+        offer(p, tree_->triangles[tree_->place[near]], best, hit);
+    search(p, best, hit);
+    return hit;
+}
+
+void ClosestPoint::search(const Vec3& p, double best, Hit& hit) const
+{
     const auto& nodes = tree_->boxes.nodes();
-    double best = distance_limit * distance_limit;
-    if (nodes.empty() || !(distance_limit >= 0.0))
-        return hit;
+    if (nodes.empty())
+        return;
     struct Open {
         Index node;
         double distance;
@@ -181,22 +222,11 @@ ClosestPoint::Hit ClosestPoint::query(const Vec3& p, double distance_limit) cons
                 stack[depth++] = near;
             continue;
         }
-        for (Index i = node.first; i < node.first + node.count; ++i) {
-            const Corners& t = tree_->triangles[i];
-            const std::array<double, 3> bary =
-                t.thin ? closest_on_thin_triangle(p, t) : closest_on_triangle(p, t);
-            const Vec3 q = combine(t, bary);
-            const double d = norm_squared(q - p);
-            if (d < best || (d == best && t.face < hit.where.face)) {
-                best = d;
-                hit.where = {t.face, bary};
-                hit.position = q;
-            }
-        }
+        for (Index i = node.first; i < node.first + node.count; ++i)
+            offer(p, tree_->triangles[i], best, hit);
     }
     if (hit.where.face != invalid_index)
         hit.distance = std::sqrt(best);
-    return hit;
 }
 
 } // namespace bot2nurbs
