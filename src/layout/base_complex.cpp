@@ -9,9 +9,6 @@ namespace bot2nurbs {
 
 namespace {
 
-// The second pass lets the straightened neighbours act; a third changes nothing one can see.
-constexpr int straightening_passes = 2;
-
 struct HalfPath {
     std::vector<PathNode> nodes;
     Index last_face = invalid_index; //!< The face it reaches the cut in; invalid: along the edge.
@@ -148,23 +145,19 @@ Result<PatchComplex> build_base_complex(const Tiles& tiles, Context& context)
 
 void straighten_triangles(PatchComplex& complex, Context& context)
 {
-    for (int pass = 0; pass < straightening_passes; ++pass) {
-        const Index count = static_cast<Index>(complex.paths().size());
-        for (Index p = 0; p < count && !context.cancelled(); ++p) {
-            const PatchComplex::Path& path = complex.paths()[p];
-            if (!path.alive)
-                continue;
-            const std::vector<Index> faces{path.left, path.right};
-            const auto border = complex.border(faces);
-            if (!border || border->size() != 4)
-                continue;
-            Index a = 0;
-            while (complex.start((*border)[a]) != path.geometry.a)
-                ++a;
-            complex.replace(faces, *border, {{a, (a + 2) % 4}});
-        }
-        complex.compact();
+    const Index count = static_cast<Index>(complex.paths().size());
+    for (Index p = 0; p < count && !context.cancelled(); ++p) {
+        const PatchComplex::Path& path = complex.paths()[p];
+        const std::vector<Index> faces{path.left, path.right};
+        const auto border = complex.border(faces);
+        if (!path.alive || !border || border->size() != 4)
+            continue;
+        Index a = 0;
+        while (complex.start((*border)[a]) != path.geometry.a)
+            ++a;
+        complex.replace(faces, *border, {{a, (a + 2) % 4}});
     }
+    complex.compact();
 }
 
 } // namespace bot2nurbs

@@ -13,8 +13,8 @@ namespace bot2nurbs {
 //! \cite eck_1995, section 4. \pre tiles.violations() is empty.
 Result<PatchComplex> build_base_complex(const Tiles& tiles, Context& context);
 
-//! Replaces every path by the diagonal of the map of its two triangles to the square, twice over:
-//! paths become straight and smooth across junctions. \cite eck_1995, section 4.2.
+//! Replaces every path by the diagonal of the map of its two triangles to the square: paths become
+//! straight and smooth across junctions. \cite eck_1995, section 4.2.
 void straighten_triangles(PatchComplex& complex, Context& context);
 
 } // namespace bot2nurbs

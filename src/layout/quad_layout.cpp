@@ -20,7 +20,12 @@ constexpr double valence_weight = 0.35;
 constexpr double bottleneck_slack = 1.3;
 // A change must lower the energy by this much, so that rounding does not make it cycle.
 constexpr double min_gain = 1e-3;
-constexpr int max_passes = 6;
+// Rounds of improvement: most of the gain is in the first, and each costs some ten times as much as
+// mapping every patch once.
+constexpr int triangle_passes = 2;
+constexpr int quad_passes = 3;
+// A vertex this near to the middle of its star, over the star's radius, stays.
+constexpr double middle_enough = 0.12;
 // A closed surface of quads with fewer than this is left as it is.
 constexpr Index min_faces = 3;
 // While there are more than this factor times the wanted quads, one quad less is worth this much.
@@ -62,8 +67,8 @@ public:
 
     QuadImprovement run()
     {
-        for (int pass = 0; pass < max_passes && !context_.cancelled(); ++pass) {
-            const QuadImprovement before = done_;
+        const int passes = sides_ == 3 ? triangle_passes : quad_passes;
+        for (int pass = 0; pass < passes && !context_.cancelled(); ++pass) {
             rotate_edges();
             if (sides_ == 4) {
                 remove_doublets(false);
@@ -71,26 +76,32 @@ public:
                 rotate_edges();
             }
             relocate_vertices();
-            straighten_edges();
-            if (before.rotations == done_.rotations && before.collapses == done_.collapses &&
-                before.doublets == done_.doublets && pass > 0)
-                break;
         }
-        if (sides_ == 4 && !context_.cancelled())
-            remove_doublets(true);
+        if (sides_ == 4) {
+            straighten_edges();
+            if (!context_.cancelled())
+                remove_doublets(true);
+        }
         return done_;
     }
 
 private:
     double cost(int valence) const { return valence_cost(sides_, valence); }
-    double energy(Index f)
+    struct FaceState {
+        double energy = -1.0; // Negative: not known.
+        double size = 0.0;
+    };
+    const FaceState& state(Index f)
     {
-        if (energy_.size() <= f)
-            energy_.resize(f + 1, -1.0);
-        if (energy_[f] < 0.0)
-            energy_[f] = face_energy(complex_, complex_.faces()[f].sides, metric_);
-        return energy_[f];
+        if (states_.size() <= f)
+            states_.resize(f + 1);
+        if (states_[f].energy < 0.0)
+            states_[f].energy =
+                face_energy(complex_, complex_.faces()[f].sides, metric_, &states_[f].size);
+        return states_[f];
     }
+    // Forgets the states of faces from a number on: that number will be used anew.
+    void forget_from(Index first) { states_.resize(std::min<std::size_t>(states_.size(), first)); }
 
     // Whether an edge joins the start of a side to vertex b.
     bool adjacent(const Side& at_a, Index b) const
@@ -107,26 +118,28 @@ private:
                  const std::vector<std::pair<Index, Index>>& chords, double valence_change,
                  const MappedDisk* disk = nullptr, Index center = invalid_index)
     {
-        double before = 0.0;
-        for (const Index f : faces)
-            before += energy(f);
+        double before = 0.0, size = 0.0;
+        for (const Index f : faces) {
+            before += state(f).energy;
+            size += state(f).size;
+        }
         const double allowed = before - valence_change - min_gain;
-        if (!(allowed > 0.0))
+        // However the disk is divided, distortion is at least one and sizes add up to the same.
+        const double count = static_cast<double>(chords.size()) + (center == invalid_index ? 1 : 0);
+        if (!(allowed > size * size / count))
             return false;
         if (!(disk ? complex_.replace(faces, border, chords, *disk, center)
                    : complex_.replace(faces, border, chords)))
             return false;
         const Index first = static_cast<Index>(complex_.faces().size()) - complex_.new_face_count();
-        energy_.resize(complex_.faces().size(), -1.0);
+        forget_from(first);
         double after = 0.0;
-        for (Index f = first; f < complex_.faces().size() && after < allowed; ++f) {
-            energy_[f] = -1.0;
-            after += energy(f);
-        }
+        for (Index f = first; f < complex_.faces().size() && after < allowed; ++f)
+            after += state(f).energy;
         if (after < allowed)
             return true;
         complex_.undo();
-        energy_.resize(first);
+        forget_from(first);
         return false;
     }
 
@@ -173,9 +186,8 @@ private:
     const SizeMetric& metric_;
     Context& context_;
     std::vector<int> valence_;        // Per mesh vertex.
-    std::vector<double> energy_;      // Per face; negative: not known.
+    std::vector<FaceState> states_;   // Per face.
     std::vector<Index> vertex_tried_; // Per mesh vertex: number of faces at the last relocation.
-    Index straightened_ = 0;          // Number of faces before the last round of straightening.
     QuadImprovement done_;
 };
 
@@ -204,8 +216,7 @@ void Improver::remove_doublets(bool all)
                     continue;
                 }
                 complex_.replace(faces, *border, {});
-                energy_.resize(complex_.faces().size(), -1.0);
-                energy_.back() = -1.0;
+                forget_from(static_cast<Index>(complex_.faces().size()) - 1);
             }
             valence_[v] = 0;
             --valence_[a], --valence_[b];
@@ -221,7 +232,7 @@ double Improver::energy_after(const std::vector<Index>& faces, const std::vector
 {
     double change = 0.0;
     for (const Index f : faces)
-        change -= energy(f);
+        change -= state(f).energy;
     if (!complex_.replace(faces, border, chords))
         return std::numeric_limits<double>::infinity();
     const Index count = static_cast<Index>(complex_.faces().size());
@@ -273,9 +284,7 @@ bool Improver::rotate_to_doublet(const Side& at_v, double limit)
     }
     if (!best || !complex_.replace(best->faces, best->border, {{best->from, best->to}}))
         return false;
-    energy_.resize(complex_.faces().size(), -1.0);
-    for (Index k = 1; k <= complex_.new_face_count(); ++k)
-        energy_[complex_.faces().size() - k] = -1.0;
+    forget_from(static_cast<Index>(complex_.faces().size()) - complex_.new_face_count());
     const SurfacePath& gone = complex_.paths()[best->path].geometry;
     --valence_[gone.a], --valence_[gone.b];
     ++valence_[v], ++valence_[complex_.start(best->border[best->to])];
@@ -406,14 +415,19 @@ void Improver::relocate_vertices()
         for (const Index c : disk->overlay.corners)
             middle = middle + (1.0 / static_cast<double>(border->size())) * disk->uv[c];
         Index center = invalid_index;
-        double nearest = std::numeric_limits<double>::infinity();
+        double nearest = std::numeric_limits<double>::infinity(), now = 0.0;
         for (Index i = disk->overlay.boundary_count; i < disk->overlay.vertices.size(); ++i)
             if (disk->overlay.vertices[i].mesh_vertex != invalid_index &&
                 norm(disk->uv[i] - middle) < nearest) {
                 nearest = norm(disk->uv[i] - middle);
                 center = disk->overlay.vertices[i].mesh_vertex;
             }
-        if (center == invalid_index)
+        for (Index i = disk->overlay.boundary_count; i < disk->overlay.vertices.size(); ++i)
+            if (disk->overlay.vertices[i].mesh_vertex == v)
+                now = norm(disk->uv[i] - middle);
+        vertex_tried_[v] = static_cast<Index>(complex_.faces().size());
+        const double radius = norm(disk->uv[disk->overlay.corners[0]] - middle);
+        if (center == invalid_index || now - nearest < middle_enough * radius)
             continue;
         std::vector<std::pair<Index, Index>> chords;
         for (Index i = 0; i < border->size(); ++i) {
@@ -436,14 +450,11 @@ void Improver::relocate_vertices()
 
 void Improver::straighten_edges()
 {
-    const Index begin = static_cast<Index>(complex_.faces().size());
     const Index count = static_cast<Index>(complex_.paths().size());
     for (Index p = 0; p < count && !context_.cancelled(); ++p) {
         if (!complex_.paths()[p].alive)
             continue;
         const std::vector<Index> faces{complex_.paths()[p].left, complex_.paths()[p].right};
-        if (!changed_since(faces, straightened_))
-            continue;
         const Index n = 2 * sides_ - 2;
         const auto border = complex_.border(faces);
         if (!border || border->size() != n)
@@ -453,7 +464,6 @@ void Improver::straighten_edges()
             ++ia;
         attempt(faces, *border, {{ia, (ia + sides_ - 1) % n}}, 0.0);
     }
-    straightened_ = begin;
 }
 
 } // namespace
@@ -468,7 +478,8 @@ double face_distortion(PatchComplex& complex, const std::vector<Side>& border)
     return map ? measure_distortion(*overlay, map->uv).combined() : infinity;
 }
 
-double face_energy(PatchComplex& complex, const std::vector<Side>& border, const SizeMetric& metric)
+double face_energy(PatchComplex& complex, const std::vector<Side>& border, const SizeMetric& metric,
+                   double* size_out)
 {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const auto overlay = complex.overlay(border);
@@ -490,6 +501,8 @@ double face_energy(PatchComplex& complex, const std::vector<Side>& border, const
         size += 0.5 * norm(cross(p, q)) * density * density;
     }
     size /= quad ? metric.target_area : 0.5 * metric.target_area;
+    if (size_out)
+        *size_out = size;
     return measure_distortion(*overlay, map->uv).combined() * size * size;
 }
 

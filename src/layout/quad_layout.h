@@ -26,8 +26,9 @@ struct SizeMetric {
 //! Energy of a patch (a triangle of K_tri counts as half a patch): distortion times the square of
 //! its size over the target. The sum over all patches grows with distortion, with uneven sizes, and
 //! when fewer patches must cover the surface.
+//! `size`, if given, receives the size over the target: the energy is at least its square.
 double face_energy(PatchComplex& complex, const std::vector<PatchComplex::Side>& border,
-                   const SizeMetric& metric);
+                   const SizeMetric& metric, double* size = nullptr);
 
 //! Improves K_tri before pairing: flips edges, moves vertices to the middle of their star and
 //! straightens edges, as long as that lowers the sum of energies and a penalty for valences other

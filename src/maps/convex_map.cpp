@@ -37,30 +37,28 @@ double cotangent(const Vec3& at, const Vec3& p, const Vec3& q)
 }
 
 // The undirected edges with at least one inner end, each once, with symmetric weights.
-std::vector<Edge> weighted_edges(const Overlay& overlay, bool harmonic)
+std::vector<Edge> weighted_edges(const Overlay& overlay, const std::vector<Index>& opposite,
+                                 bool harmonic)
 {
-    std::vector<Edge> half;
-    half.reserve(3 * overlay.triangles.size());
-    for (const auto& t : overlay.triangles)
-        for (int k = 0; k < 3; ++k) {
-            const Index a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];
-            if (a < overlay.boundary_count && b < overlay.boundary_count)
-                continue;
-            const double w = harmonic ? 0.5 * cotangent(overlay.vertices[c].position,
-                                                        overlay.vertices[a].position,
-                                                        overlay.vertices[b].position)
-                                      : 0.5;
-            half.push_back({std::min(a, b), std::max(a, b), w});
-        }
-    std::sort(half.begin(), half.end(), [](const Edge& p, const Edge& q) {
-        return p.a != q.a ? p.a < q.a : (p.b != q.b ? p.b < q.b : p.weight < q.weight);
-    });
     std::vector<Edge> edges;
-    for (std::size_t i = 0; i < half.size(); i += 2) {
-        // Every edge with an inner end has two triangles.
-        Edge e = half[i];
-        e.weight = std::clamp(half[i].weight + half[i + 1].weight, min_weight, max_weight);
-        edges.push_back(e);
+    edges.reserve(2 * overlay.triangles.size());
+    const auto half_cotangent = [&overlay](Index h) {
+        const auto& t = overlay.triangles[h / 3];
+        return 0.5 * cotangent(overlay.vertices[t[(h + 2) % 3]].position,
+                               overlay.vertices[t[h % 3]].position,
+                               overlay.vertices[t[(h + 1) % 3]].position);
+    };
+    for (Index h = 0; h < opposite.size(); ++h) {
+        const Index g = opposite[h];
+        if (g == invalid_index || g < h)
+            continue;
+        const Index a = overlay.triangles[h / 3][h % 3], b = overlay.triangles[h / 3][(h + 1) % 3];
+        if (a < overlay.boundary_count && b < overlay.boundary_count)
+            continue;
+        const double weight =
+            harmonic ? std::clamp(half_cotangent(h) + half_cotangent(g), min_weight, max_weight)
+                     : 1.0;
+        edges.push_back({std::min(a, b), std::max(a, b), weight});
     }
     return edges;
 }
@@ -173,11 +171,13 @@ std::optional<ConvexMap> map_to_polygon(const Overlay& overlay, const std::vecto
     using Extended = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<100>,
                                                    boost::multiprecision::et_off>;
     const std::vector<Vec2> border = place_border(overlay, corners);
+    const std::vector<Index> opposite = opposite_half_edges(overlay);
     for (const MapLevel level : {MapLevel::harmonic, MapLevel::uniform, MapLevel::exact}) {
         if (level < first)
             continue;
         ConvexMap map{border, level};
-        const std::vector<Edge> edges = weighted_edges(overlay, level == MapLevel::harmonic);
+        const std::vector<Edge> edges =
+            weighted_edges(overlay, opposite, level == MapLevel::harmonic);
         const bool solved = level == MapLevel::exact ? solve_inner<Extended>(overlay, edges, map.uv)
                                                      : solve_inner<double>(overlay, edges, map.uv);
         if (solved && is_injective(overlay, map.uv))

@@ -36,6 +36,31 @@ std::array<double, 3> Overlay::bary_in(const ManifoldMesh& mesh, Index vertex, I
     return w;
 }
 
+std::vector<Index> opposite_half_edges(const Overlay& overlay)
+{
+    // Half edges in lists by their smaller end; a list has about six entries.
+    const Index count = static_cast<Index>(3 * overlay.triangles.size());
+    std::vector<Index> head(overlay.vertices.size(), invalid_index), next(count);
+    std::vector<Index> opposite(count, invalid_index);
+    const auto ends = [&overlay](Index h) {
+        const auto& t = overlay.triangles[h / 3];
+        return std::pair<Index, Index>(t[h % 3], t[(h + 1) % 3]);
+    };
+    for (Index h = 0; h < count; ++h) {
+        const auto [a, b] = ends(h);
+        const Index low = std::min(a, b);
+        for (Index g = head[low]; g != invalid_index; g = next[g])
+            if (ends(g) == std::pair<Index, Index>(b, a)) {
+                opposite[h] = g;
+                opposite[g] = h;
+                break;
+            }
+        next[h] = head[low];
+        head[low] = h;
+    }
+    return opposite;
+}
+
 OverlayBuilder::OverlayBuilder(const ManifoldMesh& mesh)
     : mesh_(mesh), vertex_stamp_(mesh.vertex_count(), 0), face_stamp_(mesh.face_count(), 0),
       vertex_local_(mesh.vertex_count(), invalid_index)

@@ -32,6 +32,10 @@ struct Overlay {
     std::array<double, 3> bary_in(const ManifoldMesh& mesh, Index vertex, Index f) const;
 };
 
+//! Opposite half edges of an overlay's triangles: entry 3 t + k is the half edge of the neighbour
+//! across side k of triangle t, or invalid on the border. Cost linear.
+std::vector<Index> opposite_half_edges(const Overlay& overlay);
+
 //! Derives overlays. Keeps scratch arrays of the size of the mesh, so one object serves many calls
 //! from one thread; each call costs only what lies inside.
 class OverlayBuilder {

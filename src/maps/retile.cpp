@@ -18,32 +18,6 @@ constexpr double crossing_margin = 0.02;
 // Stretches shorter than this share of their edge hold no further crossing.
 constexpr double min_stretch = 1e-9;
 
-// Neighbours of the triangles of an overlay: twin[3 t + k] is the half edge opposite to side k of
-// t.
-std::vector<Index> overlay_twins(const Overlay& overlay)
-{
-    struct Half {
-        Index low, high, at;
-    };
-    std::vector<Half> halves;
-    halves.reserve(3 * overlay.triangles.size());
-    for (Index t = 0; t < overlay.triangles.size(); ++t)
-        for (Index k = 0; k < 3; ++k) {
-            const Index a = overlay.triangles[t][k], b = overlay.triangles[t][(k + 1) % 3];
-            halves.push_back({std::min(a, b), std::max(a, b), 3 * t + k});
-        }
-    std::sort(halves.begin(), halves.end(), [](const Half& p, const Half& q) {
-        return p.low != q.low ? p.low < q.low : (p.high != q.high ? p.high < q.high : p.at < q.at);
-    });
-    std::vector<Index> twin(halves.size(), invalid_index);
-    for (std::size_t i = 0; i + 1 < halves.size(); ++i)
-        if (halves[i].low == halves[i + 1].low && halves[i].high == halves[i + 1].high) {
-            twin[halves[i].at] = halves[i + 1].at;
-            twin[halves[i + 1].at] = halves[i].at;
-        }
-    return twin;
-}
-
 // Parameter on a mesh edge of an overlay vertex, if it lies on that edge.
 std::optional<double> parameter_on(const ManifoldMesh& mesh, const Overlay::Vertex& v, Index edge)
 {
@@ -68,7 +42,7 @@ struct Hit {
 class Drawer {
 public:
     Drawer(const ManifoldMesh& mesh, const Overlay& overlay, const std::vector<Vec2>& uv)
-        : mesh_(mesh), overlay_(overlay), uv_(uv), twin_(overlay_twins(overlay)),
+        : mesh_(mesh), overlay_(overlay), uv_(uv), twin_(opposite_half_edges(overlay)),
           corner_of_(overlay.vertices.size(), invalid_index)
     {
         for (Index t = 0; t < overlay.triangles.size(); ++t)
