@@ -24,6 +24,9 @@ constexpr double min_gain = 1e-3;
 // mapping every patch once.
 constexpr int triangle_passes = 2;
 constexpr int quad_passes = 3;
+// While a patch is worse than this, up to so many more; what did not change is not tried again.
+constexpr double bad_energy = 5.0;
+constexpr int max_passes = 10;
 // A vertex this near to the middle of its star, over the star's radius, stays.
 constexpr double middle_enough = 0.12;
 // A closed surface of quads with fewer than this is left as it is.
@@ -68,7 +71,9 @@ public:
     QuadImprovement run()
     {
         const int passes = sides_ == 3 ? triangle_passes : quad_passes;
-        for (int pass = 0; pass < passes && !context_.cancelled(); ++pass) {
+        for (int pass = 0; pass < max_passes && !context_.cancelled(); ++pass) {
+            if (pass >= passes && worst_energy() < bad_energy)
+                break;
             rotate_edges();
             if (sides_ == 4) {
                 remove_doublets(false);
@@ -99,6 +104,14 @@ private:
             states_[f].energy =
                 face_energy(complex_, complex_.faces()[f].sides, metric_, &states_[f].size);
         return states_[f];
+    }
+    double worst_energy()
+    {
+        double worst = 0.0;
+        for (Index f = 0; f < complex_.faces().size(); ++f)
+            if (complex_.faces()[f].alive())
+                worst = std::max(worst, state(f).energy);
+        return worst;
     }
     // Forgets the states of faces from a number on: that number will be used anew.
     void forget_from(Index first) { states_.resize(std::min<std::size_t>(states_.size(), first)); }
