@@ -38,8 +38,8 @@ struct RoundProblem {
     const RowsByPiece* groups = nullptr;
     const std::vector<Vec3>* bezier = nullptr;     //!< 169 per quad; empty: all zero.
     const std::vector<double>* fairness = nullptr; //!< f_q.
-    const std::vector<double>* damping = nullptr;  //!< Per free unknown; null: none.
     double mu = 1.0;                               //!< 1: point-distance rows.
+    const std::vector<double>* damping = nullptr;  //!< Per free unknown; null: none.
 };
 
 //! The normal equations of a round, assembled piece by piece in Bezier coefficients and scattered
