@@ -44,7 +44,7 @@ def judge(binary, path, limit):
 
 def describe(run):
     if run.code != 0:
-        return run.message
+        return run.message.replace(str(Path(run.command[1]).parent) + "/", "")
     said = run.repairs + [w for w in run.warnings if w not in run.repairs]
     rms = [c["deviation"]["rms_relative"] for c in run.report["components"]]
     text = ", ".join(said) or "nothing to repair"
@@ -57,7 +57,7 @@ def main():
     parser.add_argument("--data", default=verdict.ROOT.parent / "shared/data/meshes/broken", type=Path)
     parser.add_argument("--only", default="", help="files whose path contains this text; no report")
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--limit", type=float, default=60.0, help="seconds for each file")
+    parser.add_argument("--limit", type=float, default=60.0, help="seconds of processor time for each file")
     arguments = parser.parse_args()
     if not arguments.data.is_dir():
         print(f"skipped: {arguments.data} is absent")
@@ -87,9 +87,10 @@ def main():
             "# Bad input",
             "",
             "Written by `scripts/bad_input.py`: every broken mesh of the test corpus through the whole",
-            f"command. A verdict is due within {arguments.limit:.0f} s: a sound result (valid, solid, joins within",
-            f"{verdict.MAX_ANGLE_DEG:g} degrees, no gap) with the repairs stated, or exit code 3, 5 or 6 with a message and no",
-            "file left behind. Anything else is a failure.",
+            f"command. A verdict is due within {arguments.limit:.0f} s of one processor: a sound result (valid, solid, joins within",
+            f"{verdict.MAX_ANGLE_DEG:g} degrees, no gap, rms below {100 * verdict.MAX_RMS:g} % of the diagonal) with the repairs stated, or exit code",
+            "3, 5 or 6 with a message and no file left behind. Anything else is a failure. At n diagonals from the",
+            f"origin the rounding of the coordinates alone turns normals by up to {verdict.FAR_ANGLE_DEG:g} n degrees, which is allowed.",
             "",
         ]
         order = ["sound", *verdict.REFUSALS.values(), "failure"]
