@@ -79,9 +79,10 @@ std::optional<Overlay> PatchComplex::overlay(Index face)
     return builder_.disk(geometry(faces_[face].sides));
 }
 
-std::optional<Overlay> PatchComplex::overlay(const std::vector<Side>& border)
+std::optional<Overlay> PatchComplex::overlay(const std::vector<Side>& border,
+                                             OverlayBuilder& builder) const
 {
-    return builder_.disk(geometry(border));
+    return builder.disk(geometry(border));
 }
 
 std::optional<std::vector<PatchComplex::Side>>

@@ -87,7 +87,8 @@ public:
     std::optional<std::vector<Side>> border(const std::vector<Index>& faces) const;
 
     std::optional<Overlay> overlay(Index face);
-    std::optional<Overlay> overlay(const std::vector<Side>& border);
+    //! The overlay of a disk, derived by a builder of the caller's own: safe from several threads.
+    std::optional<Overlay> overlay(const std::vector<Side>& border, OverlayBuilder& builder) const;
     std::optional<MappedDisk> mapped(const std::vector<Side>& border);
 
     //! Drops dead faces and paths and numbers the rest anew, in order.

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "layout/quad_layout.h"
 
+#include "core/parallel.h"
 #include "layout/pairing.h"
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <cmath>
@@ -70,6 +73,7 @@ public:
 
     QuadImprovement run()
     {
+        find_states(0);
         const int passes = sides_ == 3 ? triangle_passes : quad_passes;
         for (int pass = 0; pass < max_passes && !context_.cancelled(); ++pass) {
             if (pass >= passes && worst_energy() < bad_energy)
@@ -96,13 +100,26 @@ private:
         double energy = -1.0; // Negative: not known.
         double size = 0.0;
     };
+    // Finds the states of the faces from a number on, side by side.
+    void find_states(Index first)
+    {
+        const Index last = static_cast<Index>(complex_.faces().size());
+        states_.resize(last);
+        for_each_chunk(context_, last - first, 1, [&](std::size_t begin, std::size_t end) {
+            OverlayBuilder& builder = builders_.local();
+            for (std::size_t f = first + begin; f < first + end; ++f)
+                if (states_[f].energy < 0.0 && complex_.faces()[f].alive())
+                    states_[f].energy = face_energy(complex_, complex_.faces()[f].sides, metric_,
+                                                    builder, &states_[f].size);
+        });
+    }
     const FaceState& state(Index f)
     {
         if (states_.size() <= f)
             states_.resize(f + 1);
         if (states_[f].energy < 0.0)
-            states_[f].energy =
-                face_energy(complex_, complex_.faces()[f].sides, metric_, &states_[f].size);
+            states_[f].energy = face_energy(complex_, complex_.faces()[f].sides, metric_,
+                                            builders_.local(), &states_[f].size);
         return states_[f];
     }
     double worst_energy()
@@ -146,8 +163,9 @@ private:
             return false;
         const Index first = static_cast<Index>(complex_.faces().size()) - complex_.new_face_count();
         forget_from(first);
+        find_states(first);
         double after = 0.0;
-        for (Index f = first; f < complex_.faces().size() && after < allowed; ++f)
+        for (Index f = first; f < complex_.faces().size(); ++f)
             after += state(f).energy;
         if (after < allowed)
             return true;
@@ -193,6 +211,8 @@ private:
     bool alive(const Side& s) const { return complex_.paths()[s.path].alive; }
 
     PatchComplex& complex_;
+    oneapi::tbb::enumerable_thread_specific<OverlayBuilder> builders_{
+        [this] { return OverlayBuilder(complex_.mesh()); }};
     Index sides_; // Of every face.
     int max_valence_;
     Index min_quads_;
@@ -250,7 +270,7 @@ double Improver::energy_after(const std::vector<Index>& faces, const std::vector
         return std::numeric_limits<double>::infinity();
     const Index count = static_cast<Index>(complex_.faces().size());
     for (Index f = count - complex_.new_face_count(); f < count; ++f)
-        change += face_energy(complex_, complex_.faces()[f].sides, metric_);
+        change += face_energy(complex_, complex_.faces()[f].sides, metric_, builders_.local());
     complex_.undo();
     return change;
 }
@@ -481,21 +501,22 @@ void Improver::straighten_edges()
 
 } // namespace
 
-double face_distortion(PatchComplex& complex, const std::vector<Side>& border)
+double face_distortion(const PatchComplex& complex, const std::vector<Side>& border,
+                       OverlayBuilder& builder)
 {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    const auto overlay = complex.overlay(border);
+    const auto overlay = complex.overlay(border, builder);
     if (!overlay)
         return infinity;
     const auto map = map_to_polygon(*overlay, unit_square());
     return map ? measure_distortion(*overlay, map->uv).combined() : infinity;
 }
 
-double face_energy(PatchComplex& complex, const std::vector<Side>& border, const SizeMetric& metric,
-                   double* size_out)
+double face_energy(const PatchComplex& complex, const std::vector<Side>& border,
+                   const SizeMetric& metric, OverlayBuilder& builder, double* size_out)
 {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    const auto overlay = complex.overlay(border);
+    const auto overlay = complex.overlay(border, builder);
     if (!overlay)
         return infinity;
     const bool quad = border.size() == 4;
@@ -521,25 +542,35 @@ double face_energy(PatchComplex& complex, const std::vector<Side>& border, const
 
 Result<bool> pair_triangles(PatchComplex& complex, Context& context)
 {
-    std::vector<PairCandidate> candidates;
-    std::vector<Index> path_of;
     std::vector<int> valence(complex.mesh().vertex_count(), 0);
     for (const auto& p : complex.paths())
         if (p.alive)
             ++valence[p.geometry.a], ++valence[p.geometry.b];
+    const double infinity = std::numeric_limits<double>::infinity();
+    std::vector<double> distortion(complex.paths().size(), infinity);
+    oneapi::tbb::enumerable_thread_specific<OverlayBuilder> builders(
+        [&complex] { return OverlayBuilder(complex.mesh()); });
+    const bool finished =
+        for_each_chunk(context, distortion.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t p = begin; p < end; ++p) {
+                const PatchComplex::Path& path = complex.paths()[p];
+                const auto border = complex.border({path.left, path.right});
+                if (border && border->size() == 4)
+                    distortion[p] = face_distortion(complex, *border, builders.local());
+            }
+        });
+    if (!finished)
+        return Context::cancelled_error("pairing");
+    std::vector<PairCandidate> candidates;
+    std::vector<Index> path_of;
     for (Index p = 0; p < complex.paths().size(); ++p) {
-        if (context.cancelled())
-            return Context::cancelled_error("pairing");
-        const PatchComplex::Path& path = complex.paths()[p];
-        const auto border = complex.border({path.left, path.right});
-        if (!border || border->size() != 4)
+        if (!std::isfinite(distortion[p]))
             continue;
+        const PatchComplex::Path& path = complex.paths()[p];
         PairCandidate c;
         c.face_a = path.left;
         c.face_b = path.right;
-        c.distortion = face_distortion(complex, *border);
-        if (!std::isfinite(c.distortion))
-            continue;
+        c.distortion = distortion[p];
         // A triangle vertex of valence six that loses two edges has four; what joining across an
         // edge does to a vertex is counted from there.
         const double a = static_cast<double>(valence[path.geometry.a]) - 6.0;

@@ -9,7 +9,8 @@ namespace bot2nurbs {
 //! Distortion of a face's map to the unit square: 1 for a similarity (MapDistortion::combined),
 //! infinite when it cannot be mapped. Harmonic energy alone would not notice a limb squeezed into a
 //! corner of its patch; stretch alone would not notice shear.
-double face_distortion(PatchComplex& complex, const std::vector<PatchComplex::Side>& border);
+double face_distortion(const PatchComplex& complex, const std::vector<PatchComplex::Side>& border,
+                       OverlayBuilder& builder);
 
 //! Joins the triangles of K_tri in pairs: K. Bottleneck-optimal in distortion, then least total of
 //! distortion and valence terms. \cite eck_hoppe_1996, section 3.2.
@@ -27,8 +28,8 @@ struct SizeMetric {
 //! its size over the target. The sum over all patches grows with distortion, with uneven sizes, and
 //! when fewer patches must cover the surface.
 //! `size`, if given, receives the size over the target: the energy is at least its square.
-double face_energy(PatchComplex& complex, const std::vector<PatchComplex::Side>& border,
-                   const SizeMetric& metric, double* size = nullptr);
+double face_energy(const PatchComplex& complex, const std::vector<PatchComplex::Side>& border,
+                   const SizeMetric& metric, OverlayBuilder& builder, double* size = nullptr);
 
 //! Improves K_tri before pairing: flips edges, moves vertices to the middle of their star and
 //! straightens edges, as long as that lowers the sum of energies and a penalty for valences other

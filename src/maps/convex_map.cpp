@@ -37,9 +37,9 @@ double cotangent(const Vec3& at, const Vec3& p, const Vec3& q)
 }
 
 // The undirected edges with at least one inner end, each once, with symmetric weights.
-std::vector<Edge> weighted_edges(const Overlay& overlay, const std::vector<Index>& opposite,
-                                 bool harmonic)
+std::vector<Edge> weighted_edges(const Overlay& overlay, bool harmonic)
 {
+    const std::vector<Index>& opposite = overlay.opposite;
     std::vector<Edge> edges;
     edges.reserve(2 * overlay.triangles.size());
     const auto half_cotangent = [&overlay](Index h) {
@@ -171,13 +171,11 @@ std::optional<ConvexMap> map_to_polygon(const Overlay& overlay, const std::vecto
     using Extended = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<100>,
                                                    boost::multiprecision::et_off>;
     const std::vector<Vec2> border = place_border(overlay, corners);
-    const std::vector<Index> opposite = opposite_half_edges(overlay);
     for (const MapLevel level : {MapLevel::harmonic, MapLevel::uniform, MapLevel::exact}) {
         if (level < first)
             continue;
         ConvexMap map{border, level};
-        const std::vector<Edge> edges =
-            weighted_edges(overlay, opposite, level == MapLevel::harmonic);
+        const std::vector<Edge> edges = weighted_edges(overlay, level == MapLevel::harmonic);
         const bool solved = level == MapLevel::exact ? solve_inner<Extended>(overlay, edges, map.uv)
                                                      : solve_inner<double>(overlay, edges, map.uv);
         if (solved && is_injective(overlay, map.uv))

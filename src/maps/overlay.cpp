@@ -36,29 +36,31 @@ std::array<double, 3> Overlay::bary_in(const ManifoldMesh& mesh, Index vertex, I
     return w;
 }
 
-std::vector<Index> opposite_half_edges(const Overlay& overlay)
+void Overlay::find_opposites()
 {
     // Half edges in lists by their smaller end; a list has about six entries.
-    const Index count = static_cast<Index>(3 * overlay.triangles.size());
-    std::vector<Index> head(overlay.vertices.size(), invalid_index), next(count);
-    std::vector<Index> opposite(count, invalid_index);
-    const auto ends = [&overlay](Index h) {
-        const auto& t = overlay.triangles[h / 3];
-        return std::pair<Index, Index>(t[h % 3], t[(h + 1) % 3]);
-    };
-    for (Index h = 0; h < count; ++h) {
-        const auto [a, b] = ends(h);
-        const Index low = std::min(a, b);
-        for (Index g = head[low]; g != invalid_index; g = next[g])
-            if (ends(g) == std::pair<Index, Index>(b, a)) {
-                opposite[h] = g;
-                opposite[g] = h;
-                break;
+    const Index count = static_cast<Index>(3 * triangles.size());
+    std::vector<Index> head(vertices.size(), invalid_index), next(count);
+    opposite.assign(count, invalid_index);
+    for (Index t = 0, h = 0; t < triangles.size(); ++t)
+        for (int k = 0; k < 3; ++k, ++h) {
+            const Index a = triangles[t][k], b = triangles[t][(k + 1) % 3];
+            const Index low = std::min(a, b);
+            Index* link = &head[low];
+            for (; *link != invalid_index; link = &next[*link]) {
+                const Index g = *link;
+                if (triangles[g / 3][g % 3] == b && triangles[g / 3][(g + 1) % 3] == a)
+                    break;
             }
-        next[h] = head[low];
-        head[low] = h;
-    }
-    return opposite;
+            if (*link != invalid_index) {
+                opposite[h] = *link;
+                opposite[*link] = h;
+                *link = next[*link]; // Found: out of the list.
+            } else {
+                next[h] = head[low];
+                head[low] = h;
+            }
+        }
 }
 
 OverlayBuilder::OverlayBuilder(const ManifoldMesh& mesh)
@@ -389,6 +391,7 @@ std::optional<Overlay> OverlayBuilder::disk(const std::vector<PathSide>& sides)
     flood(overlay);
     if (!is_disk(overlay))
         return std::nullopt;
+    overlay.find_opposites();
     return overlay;
 }
 
@@ -514,6 +517,7 @@ std::optional<Overlay> OverlayBuilder::tile(const std::vector<Index>& label,
     }
     if (!is_disk(overlay))
         return std::nullopt;
+    overlay.find_opposites();
     return overlay;
 }
 

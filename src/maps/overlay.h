@@ -27,14 +27,16 @@ struct Overlay {
     Index boundary_count = 0;
     std::vector<Index> corners; //!< Border vertices where a side starts; corners[0] is 0.
 
+    //! Per half edge 3 t + k, side k of triangle t: that of the neighbour, or invalid on the
+    //! border.
+    std::vector<Index> opposite;
+
+    //! Finds `opposite`. Cost linear. The builder does it for the overlays it makes.
+    void find_opposites();
     Index side_count() const { return static_cast<Index>(corners.size()); }
     //! Weights of the corners of mesh face f at a vertex that lies on that face.
     std::array<double, 3> bary_in(const ManifoldMesh& mesh, Index vertex, Index f) const;
 };
-
-//! Opposite half edges of an overlay's triangles: entry 3 t + k is the half edge of the neighbour
-//! across side k of triangle t, or invalid on the border. Cost linear.
-std::vector<Index> opposite_half_edges(const Overlay& overlay);
 
 //! Derives overlays. Keeps scratch arrays of the size of the mesh, so one object serves many calls
 //! from one thread; each call costs only what lies inside.

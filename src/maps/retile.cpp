@@ -42,7 +42,7 @@ struct Hit {
 class Drawer {
 public:
     Drawer(const ManifoldMesh& mesh, const Overlay& overlay, const std::vector<Vec2>& uv)
-        : mesh_(mesh), overlay_(overlay), uv_(uv), twin_(opposite_half_edges(overlay)),
+        : mesh_(mesh), overlay_(overlay), uv_(uv), twin_(overlay.opposite),
           corner_of_(overlay.vertices.size(), invalid_index)
     {
         for (Index t = 0; t < overlay.triangles.size(); ++t)
@@ -121,7 +121,7 @@ private:
     const ManifoldMesh& mesh_;
     const Overlay& overlay_;
     const std::vector<Vec2>& uv_;
-    std::vector<Index> twin_;
+    const std::vector<Index>& twin_;
     std::vector<Index> corner_of_;
 };
 

@@ -145,10 +145,11 @@ TEST(QuadLayout, improvement_lowers_distortion_and_leaves_few_extraordinary_vert
     PatchComplex complex = base_complex(mesh, 80);
     Context context;
     ASSERT_TRUE(*pair_triangles(complex, context));
-    const auto mean_distortion = [&complex] {
+    const auto mean_distortion = [&complex, &mesh] {
+        OverlayBuilder builder(mesh);
         double sum = 0.0;
         for (const auto& f : complex.faces())
-            sum += f.alive() ? face_distortion(complex, f.sides) : 0.0;
+            sum += f.alive() ? face_distortion(complex, f.sides, builder) : 0.0;
         return sum / complex.face_count();
     };
     const double before = mean_distortion();

@@ -67,6 +67,7 @@ Overlay flat_square(int n)
             overlay.triangles.push_back({id[i][j], id[i + 1][j + 1], id[i][j + 1]});
         }
     overlay.face.assign(overlay.triangles.size(), 0);
+    overlay.find_opposites();
     return overlay;
 }
 
