@@ -132,6 +132,8 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
         result.domain = std::move(layout->domain);
         result.domain.source_signature = signature(component.mesh);
         outcome.layout = layout->summary;
+        for (const std::string& note : layout->summary.notes)
+            context.log(LogLevel::info, "layout: " + note);
     }
     if (Status failed = place_carrier(result.domain.carrier, *unit))
         return *failed;
