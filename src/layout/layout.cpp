@@ -3,7 +3,8 @@
 
 #include "domain/domain_paths.h"
 #include "layout/base_complex.h"
-#include "layout/quad_layout.h"
+#include "layout/improve.h"
+#include "layout/pair_triangles.h"
 #include "layout/refine_carrier.h"
 #include "layout/size_field.h"
 #include "layout/split_in_quads.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "layout/base_complex.h"
-#include "layout/quad_layout.h"
+#include "layout/improve.h"
+#include "layout/pair_triangles.h"
 #include "layout/split_in_quads.h"
 
 #include "mesh_fixtures.h"

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "layout/quad_layout.h"
+#include "layout/improve.h"
 
 #include "core/parallel.h"
-#include "layout/pairing.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 
@@ -19,8 +18,6 @@ using Side = PatchComplex::Side;
 // What one unit of (valence - 4)^2 costs against the energy of a patch (a square of the wanted size
 // has 1).
 constexpr double valence_weight = 0.35;
-// Total cost is lowered among pairings whose worst distortion is within this factor of the optimum.
-constexpr double bottleneck_slack = 1.3;
 // A change must lower the energy by this much, so that rounding does not make it cycle.
 constexpr double min_gain = 1e-3;
 // Rounds of improvement: most of the gain is in the first, and each costs some ten times as much as
@@ -500,98 +497,6 @@ void Improver::straighten_edges()
 }
 
 } // namespace
-
-double face_distortion(const PatchComplex& complex, const std::vector<Side>& border,
-                       OverlayBuilder& builder)
-{
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    const auto overlay = complex.overlay(border, builder);
-    if (!overlay)
-        return infinity;
-    const auto map = map_to_polygon(*overlay, unit_square());
-    return map ? measure_distortion(*overlay, map->uv).combined() : infinity;
-}
-
-double face_energy(const PatchComplex& complex, const std::vector<Side>& border,
-                   const SizeMetric& metric, OverlayBuilder& builder, double* size_out)
-{
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    const auto overlay = complex.overlay(border, builder);
-    if (!overlay)
-        return infinity;
-    const bool quad = border.size() == 4;
-    const auto map = map_to_polygon(*overlay, quad ? unit_square() : regular_polygon(3));
-    if (!map)
-        return infinity;
-    double size = 0.0;
-    for (std::size_t t = 0; t < overlay->triangles.size(); ++t) {
-        const auto& corner = complex.mesh().triangle(overlay->face[t]);
-        const double density =
-            (metric.density[corner[0]] + metric.density[corner[1]] + metric.density[corner[2]]) /
-            3.0;
-        const auto& v = overlay->triangles[t];
-        const Vec3 p = overlay->vertices[v[1]].position - overlay->vertices[v[0]].position;
-        const Vec3 q = overlay->vertices[v[2]].position - overlay->vertices[v[0]].position;
-        size += 0.5 * norm(cross(p, q)) * density * density;
-    }
-    size /= quad ? metric.target_area : 0.5 * metric.target_area;
-    if (size_out)
-        *size_out = size;
-    return measure_distortion(*overlay, map->uv).combined() * size * size;
-}
-
-Result<bool> pair_triangles(PatchComplex& complex, Context& context)
-{
-    std::vector<int> valence(complex.mesh().vertex_count(), 0);
-    for (const auto& p : complex.paths())
-        if (p.alive)
-            ++valence[p.geometry.a], ++valence[p.geometry.b];
-    const double infinity = std::numeric_limits<double>::infinity();
-    std::vector<double> distortion(complex.paths().size(), infinity);
-    oneapi::tbb::enumerable_thread_specific<OverlayBuilder> builders(
-        [&complex] { return OverlayBuilder(complex.mesh()); });
-    const bool finished =
-        for_each_chunk(context, distortion.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t p = begin; p < end; ++p) {
-                const PatchComplex::Path& path = complex.paths()[p];
-                const auto border = complex.border({path.left, path.right});
-                if (border && border->size() == 4)
-                    distortion[p] = face_distortion(complex, *border, builders.local());
-            }
-        });
-    if (!finished)
-        return Context::cancelled_error("pairing");
-    std::vector<PairCandidate> candidates;
-    std::vector<Index> path_of;
-    for (Index p = 0; p < complex.paths().size(); ++p) {
-        if (!std::isfinite(distortion[p]))
-            continue;
-        const PatchComplex::Path& path = complex.paths()[p];
-        PairCandidate c;
-        c.face_a = path.left;
-        c.face_b = path.right;
-        c.distortion = distortion[p];
-        // A triangle vertex of valence six that loses two edges has four; what joining across an
-        // edge does to a vertex is counted from there.
-        const double a = static_cast<double>(valence[path.geometry.a]) - 6.0;
-        const double b = static_cast<double>(valence[path.geometry.b]) - 6.0;
-        c.cost = c.distortion - valence_weight * (a + b);
-        candidates.push_back(c);
-        path_of.push_back(p);
-    }
-    const auto chosen =
-        match_faces(static_cast<Index>(complex.faces().size()), candidates, bottleneck_slack);
-    if (!chosen)
-        return false;
-    for (const Index c : *chosen) {
-        const PatchComplex::Path& path = complex.paths()[path_of[c]];
-        const std::vector<Index> faces{path.left, path.right};
-        if (!complex.replace(faces, *complex.border(faces), {}))
-            return Error{ErrorCode::internal, "a pair of faces could not be joined", path_of[c]};
-    }
-    complex.compact();
-    return true;
-}
 
 void improve_triangles(PatchComplex& complex, const SizeMetric& metric, Context& context)
 {
