@@ -5,7 +5,6 @@
 #include "fit/bernstein_gram.h"
 #include "spline/bernstein.h"
 
-#include <Eigen/OrderingMethods>
 #include <algorithm>
 #include <array>
 
@@ -125,10 +124,9 @@ RowsByPiece group_by_piece(const std::vector<FitRow>& rows, Index piece_count)
 }
 
 NormalSystem::NormalSystem(const ReducedNetwork& network, const Context& context)
-    : network_(network)
+    : network_(network), scalar_(plan_, 1), coupled_(plan_, 3)
 {
-    const int n = static_cast<int>(network.free_count());
-    std::vector<std::vector<int>> neighbours(n);
+    std::vector<std::vector<int>> neighbours(network.free_count());
     for (Index p = 0; p < network.piece_count(); ++p) {
         const Index k = network.piece_size(p), *u = network.piece_unknowns(p);
         for (Index i = 0; i < k; ++i)
@@ -137,80 +135,33 @@ NormalSystem::NormalSystem(const ReducedNetwork& network, const Context& context
     }
     if (context.cancelled())
         return;
-    std::vector<Eigen::Triplet<double, int>> entries;
-    for (int i = 0; i < n; ++i) {
+    for (std::size_t i = 0; i < neighbours.size(); ++i) {
         std::vector<int>& list = neighbours[i];
-        list.push_back(i); // An unknown no piece uses still has a diagonal.
+        list.push_back(static_cast<int>(i)); // An unknown no piece uses still has a diagonal.
         std::sort(list.begin(), list.end());
         list.erase(std::unique(list.begin(), list.end()), list.end());
-        for (const int j : list)
-            entries.emplace_back(j, i, 1.0);
     }
     if (context.cancelled())
         return;
-    ScaledFactor::Matrix pattern(n, n);
-    pattern.setFromTriplets(entries.begin(), entries.end());
-    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
-    Eigen::AMDOrdering<int>()(pattern, order);
-    place_.resize(n);
-    for (int i = 0; i < n; ++i)
-        place_[order.indices()[i]] = i;
-
+    plan_ = FactorPlan(neighbours, context);
     if (context.cancelled())
         return;
-    std::vector<std::vector<int>> upper(n);
-    for (int i = 0; i < n; ++i)
-        for (const int j : neighbours[i])
-            if (place_[j] <= place_[i])
-                upper[place_[i]].push_back(place_[j]);
-    column_.assign(1, 0);
-    for (std::vector<int>& list : upper) {
-        std::sort(list.begin(), list.end());
-        row_.insert(row_.end(), list.begin(), list.end());
-        column_.push_back(static_cast<int>(row_.size()));
-    }
-
     pair_offset_.assign(1, 0);
     for (Index p = 0; p < network.piece_count(); ++p) {
         const Index k = network.piece_size(p), *u = network.piece_unknowns(p);
         for (Index i = 0; i < k; ++i)
-            for (Index j = i; j < k; ++j) {
-                const int col = std::max(place_[u[i]], place_[u[j]]);
-                const int row = std::min(place_[u[i]], place_[u[j]]);
-                const auto first = row_.begin() + column_[col];
-                const auto last = row_.begin() + column_[col + 1];
-                slot_.push_back(
-                    static_cast<int>(std::lower_bound(first, last, row) - row_.begin()));
-            }
+            for (Index j = i; j < k; ++j)
+                slot_.push_back(plan_.slot(static_cast<int>(u[i]), static_cast<int>(u[j])));
         pair_offset_.push_back(slot_.size());
-    }
-
-    if (context.cancelled())
-        return;
-    // Column counts of the factor by the row-subtree walk, for the cost rule and reports.
-    std::vector<int> parent(n, -1), mark(n, -1);
-    std::vector<std::size_t> count(n, 1);
-    for (int col = 0; col < n; ++col) {
-        mark[col] = col;
-        for (int e = column_[col]; e < column_[col + 1]; ++e)
-            for (int i = row_[e]; mark[i] != col; i = parent[i]) {
-                if (parent[i] < 0)
-                    parent[i] = col;
-                ++count[i];
-                mark[i] = col;
-            }
-    }
-    for (const std::size_t c : count) {
-        factor_entries_ += c;
-        factor_work_ += static_cast<double>(c) * static_cast<double>(c);
     }
 }
 
 bool NormalSystem::assemble(const RoundProblem& problem, bool coupled, const Context& context)
 {
     const int blocks = coupled ? 6 : 1;
-    value_.assign(row_.size() * blocks, 0.0);
-    right_.assign(3 * place_.size(), 0.0);
+    std::vector<double>& values = (coupled ? coupled_ : scalar_).values();
+    values.assign(plan_.row.size() * blocks, 0.0);
+    right_.assign(3 * plan_.place.size(), 0.0);
     const Index pieces = network_.piece_count();
     // Per piece of a batch: its upper blocks pair by pair, then its right-hand side.
     std::vector<double> local;
@@ -256,10 +207,10 @@ bool NormalSystem::assemble(const RoundProblem& problem, bool coupled, const Con
             const double* in = local.data() + local_offset[p - begin];
             for (std::size_t e = pair_offset_[p]; e < pair_offset_[p + 1]; ++e)
                 for (int m = 0; m < blocks; ++m)
-                    value_[static_cast<std::size_t>(slot_[e]) * blocks + m] += *in++;
+                    values[static_cast<std::size_t>(slot_[e]) * blocks + m] += *in++;
             for (Index i = 0; i < network_.piece_size(p); ++i)
                 for (int c = 0; c < 3; ++c)
-                    right_[3 * place_[network_.piece_unknowns(p)[i]] + c] += *in++;
+                    right_[3 * plan_.place[network_.piece_unknowns(p)[i]] + c] += *in++;
         }
     }
     return true;
@@ -267,9 +218,11 @@ bool NormalSystem::assemble(const RoundProblem& problem, bool coupled, const Con
 
 void NormalSystem::add_damping(const std::vector<double>& damping, int blocks)
 {
-    for (std::size_t i = 0; i < place_.size(); ++i) {
+    std::vector<double>& values = (blocks == 1 ? scalar_ : coupled_).values();
+    for (std::size_t i = 0; i < damping.size(); ++i) {
         // The diagonal is the last entry of its column.
-        double* d = &value_[static_cast<std::size_t>(column_[place_[i] + 1] - 1) * blocks];
+        const auto slot = static_cast<std::size_t>(plan_.column[plan_.place[i] + 1] - 1);
+        double* d = &values[slot * blocks];
         if (blocks == 1) {
             d[0] += damping[i] * d[0];
             continue;
@@ -294,15 +247,6 @@ NormalSystem::Solution NormalSystem::solve(const RoundProblem& problem, double c
 
 NormalSystem::Solution NormalSystem::solve_decoupled(double condition_limit, const Context& context)
 {
-    const auto n = static_cast<Eigen::Index>(place_.size());
-    ScaledFactor::Matrix& matrix = scalar_.matrix();
-    if (matrix.cols() != n) {
-        matrix.resize(n, n);
-        matrix.resizeNonZeros(static_cast<Eigen::Index>(row_.size()));
-        std::copy(column_.begin(), column_.end(), matrix.outerIndexPtr());
-        std::copy(row_.begin(), row_.end(), matrix.innerIndexPtr());
-    }
-    std::copy(value_.begin(), value_.end(), matrix.valuePtr());
     Solution solution;
     if (!scalar_.factorize(context) || context.cancelled())
         return solution;
@@ -311,57 +255,35 @@ NormalSystem::Solution NormalSystem::solve_decoupled(double condition_limit, con
         scalar_.drop_factor();
         return solution;
     }
-    solution.move.resize(place_.size());
-    for (int c = 0; c < 3; ++c) {
-        Eigen::VectorXd right(n);
-        for (Eigen::Index i = 0; i < n; ++i)
-            right[i] = right_[3 * i + c];
-        const Eigen::VectorXd x = scalar_.solve(right);
-        for (std::size_t i = 0; i < place_.size(); ++i)
-            solution.move[i][c] = x[place_[i]];
+    const Eigen::VectorXd x =
+        solve_by_scalar(Eigen::Map<const Eigen::VectorXd>(right_.data(), 3 * scalar_.size()));
+    set_move(x, solution);
+    return solution;
+}
+
+void NormalSystem::set_move(const Eigen::VectorXd& x, Solution& solution) const
+{
+    solution.move.resize(plan_.place.size());
+    for (std::size_t i = 0; i < plan_.place.size(); ++i) {
+        const Eigen::Index at = 3 * static_cast<Eigen::Index>(plan_.place[i]);
+        solution.move[i] = {x[at], x[at + 1], x[at + 2]};
     }
     solution.ok = true;
-    return solution;
 }
 
 Eigen::VectorXd NormalSystem::solve_by_scalar(const Eigen::VectorXd& right) const
 {
-    const auto n = static_cast<Eigen::Index>(place_.size());
+    using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+    const Eigen::Index n = scalar_.size();
     Eigen::VectorXd x(3 * n);
-    using Strided = Eigen::Map<Eigen::VectorXd, 0, Eigen::InnerStride<3>>;
-    using ConstStrided = Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<3>>;
-    for (int c = 0; c < 3; ++c)
-        Strided(x.data() + c, n) = scalar_.solve(ConstStrided(right.data() + c, n));
+    Eigen::Map<Columns>(x.data(), n, 3) =
+        scalar_.solve(Eigen::Map<const Columns>(right.data(), n, 3));
     return x;
 }
 
 NormalSystem::Solution NormalSystem::solve_coupled(double condition_limit, const Context& context)
 {
-    const auto n = static_cast<Eigen::Index>(place_.size());
-    ScaledFactor::Matrix& matrix = coupled_.matrix();
-    // Every column of blocks ends with its diagonal block, of which the upper triangle is stored.
-    if (matrix.cols() != 3 * n) {
-        matrix.resize(3 * n, 3 * n);
-        matrix.resizeNonZeros(9 * (static_cast<Eigen::Index>(row_.size()) - n) + 6 * n);
-        int *outer = matrix.outerIndexPtr(), *inner = matrix.innerIndexPtr();
-        *outer++ = 0;
-        int next = 0;
-        for (Eigen::Index j = 0; j < n; ++j)
-            for (int b = 0; b < 3; ++b) {
-                for (int e = column_[j]; e < column_[j + 1]; ++e)
-                    for (int a = 0; a <= (row_[e] == j ? b : 2); ++a)
-                        inner[next++] = 3 * row_[e] + a;
-                *outer++ = next;
-            }
-    }
-    static constexpr int block_of[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
-    double* value = matrix.valuePtr();
-    for (Eigen::Index j = 0; j < n; ++j)
-        for (int b = 0; b < 3; ++b)
-            for (int e = column_[j]; e < column_[j + 1]; ++e)
-                for (int a = 0; a <= (row_[e] == j ? b : 2); ++a)
-                    *value++ = value_[6 * static_cast<std::size_t>(e) + block_of[a][b]];
-    const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(right_.data(), 3 * n);
+    const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(right_.data(), coupled_.size());
     const auto cancelled = [&] { return context.cancelled(); };
     Solution solution;
     std::optional<Eigen::VectorXd> x;
@@ -369,12 +291,13 @@ NormalSystem::Solution NormalSystem::solve_coupled(double condition_limit, const
         // Rounds differ little: a factor of an earlier one still preconditions well, and a few
         // iterations cost much less than a factorisation.
         x = conjugate_gradients(
-            matrix, right, reuse_iterations, reuse_tolerance,
-            [&](const Eigen::VectorXd& r) { return coupled_.solve(r); }, cancelled);
+            coupled_, right, reuse_iterations, reuse_tolerance,
+            [&](const Eigen::VectorXd& r) -> Eigen::VectorXd { return coupled_.solve(r); },
+            cancelled);
         solution.condition = coupled_condition_;
     } else if (scalar_.has_factor()) {
         x = conjugate_gradients(
-            matrix, right, reuse_iterations, reuse_tolerance,
+            coupled_, right, reuse_iterations, reuse_tolerance,
             [&](const Eigen::VectorXd& r) { return solve_by_scalar(r); }, cancelled);
         solution.condition = 0.0;
     }
@@ -388,12 +311,8 @@ NormalSystem::Solution NormalSystem::solve_coupled(double condition_limit, const
         }
         x = coupled_.solve(right);
     }
-    if (!x)
-        return solution;
-    solution.move.resize(place_.size());
-    for (std::size_t i = 0; i < place_.size(); ++i)
-        solution.move[i] = {(*x)[3 * place_[i]], (*x)[3 * place_[i] + 1], (*x)[3 * place_[i] + 2]};
-    solution.ok = true;
+    if (x)
+        set_move(*x, solution);
     return solution;
 }
 

@@ -49,12 +49,14 @@ class NormalSystem {
 public:
     //! Not to be used when the context was cancelled meanwhile.
     NormalSystem(const ReducedNetwork& network, const Context& context);
+    NormalSystem(const NormalSystem&) = delete;
+    NormalSystem& operator=(const NormalSystem&) = delete;
 
-    Index size() const { return static_cast<Index>(place_.size()); }
+    Index size() const { return static_cast<Index>(plan_.size()); }
     //! Entries of the scalar factor (a 3 x 3 coupled one has nine times as many).
-    std::size_t factor_entries() const { return factor_entries_; }
+    std::size_t factor_entries() const { return plan_.entries; }
     //! Multiplications of one scalar factorisation; 27 times as many for a coupled one.
-    double factor_work() const { return factor_work_; }
+    double factor_work() const { return plan_.work; }
 
     //! Outcome of a solve: the moves, or none when the factorisation failed, the condition exceeded
     //! `condition_limit`, or the context was cancelled (ask the context).
@@ -70,19 +72,16 @@ private:
     void add_damping(const std::vector<double>& damping, int blocks);
     Solution solve_decoupled(double condition_limit, const Context& context);
     Solution solve_coupled(double condition_limit, const Context& context);
+    //! Values per unknown in the order of the columns, as moves.
+    void set_move(const Eigen::VectorXd& x, Solution& solution) const;
     //! Solves x, y and z each with the factor of the decoupled matrix.
     Eigen::VectorXd solve_by_scalar(const Eigen::VectorXd& right) const;
 
     const ReducedNetwork& network_;
-    std::vector<int> place_;  //!< Per free unknown: its column in the fill-reducing order.
-    std::vector<int> column_; //!< Upper pattern in that order, compressed columns.
-    std::vector<int> row_;
+    FactorPlan plan_;
     std::vector<std::size_t> pair_offset_; //!< Per piece: first of its slots.
     std::vector<int> slot_;                //!< Per piece and pair (i <= j): entry of the pattern.
-    std::vector<double> value_;
-    std::vector<double> right_; //!< 3 per column.
-    std::size_t factor_entries_ = 0;
-    double factor_work_ = 0.0;
+    std::vector<double> right_;            //!< 3 per column.
     ScaledFactor scalar_, coupled_;
     double coupled_condition_ = 0.0;
 };

@@ -1,55 +1,61 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "fit/polled_double.h"
+#include "bot2nurbs/context.h"
+#include "fit/factor_plan.h"
 
-#include <Eigen/Sparse>
-#include <Eigen/SparseCholesky>
+#include <Eigen/Core>
 #include <optional>
 
 namespace bot2nurbs {
 
-//! A symmetric positive definite sparse matrix and a Cholesky factor of it, scaled to unit diagonal
-//! (Jacobi). The caller orders the columns; the pattern is analysed once. The factor may be left
-//! behind when the matrix changes: it then preconditions conjugate gradients.
+//! A symmetric positive definite sparse matrix of symmetric b x b blocks, b = 1 or 3, and a
+//! Cholesky factor of it, scaled to unit diagonal (Jacobi). The factorisation is multifrontal: all
+//! arithmetic is in dense kernels. The factor may be left behind when the matrix changes: it then
+//! preconditions conjugate gradients.
 class ScaledFactor {
 public:
-    using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+    //! The plan must outlive this.
+    ScaledFactor(const FactorPlan& plan, int block);
 
-    //! The upper triangle; the pattern must stay the same after the first `factorize`.
-    Matrix& matrix() { return matrix_; }
-    const Matrix& matrix() const { return matrix_; }
+    //! Values per slot of the plan: 1, or 6 for the blocks xx, xy, xz, yy, yz, zz.
+    std::vector<double>& values() { return values_; }
+    //! Scalar rows.
+    Eigen::Index size() const { return static_cast<Eigen::Index>(plan_->size()) * block_; }
+    //! The matrix, as it is now, times a vector.
+    Eigen::VectorXd times(const Eigen::VectorXd& x) const;
 
-    //! Scales and factorises `matrix()`. \return false when it is not positive definite to rounding
-    //! or the context was cancelled, which is polled at every column; there is then no factor.
+    //! Scales and factorises. \return false when the matrix is not positive definite to rounding or
+    //! the context was cancelled, which is polled at every panel; there is then no factor.
     bool factorize(const Context& context);
     bool has_factor() const { return has_factor_; }
     //! Forgets a factor that is not to be trusted.
     void drop_factor() { has_factor_ = false; }
-    //! Solves with the matrix that was factorised last. \pre has_factor()
-    Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
+    //! Solves with the matrix that was factorised last, every column. \pre has_factor()
+    Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
     //! Estimate, from below, of the 2-norm condition of the scaled matrix, by power iteration on it
     //! and on its inverse. \pre `factorize` was the last change of the matrix
     //! Infinite when the context was cancelled.
     double condition(const Context& context) const;
 
 private:
-    Matrix matrix_;
+    void assemble_front(const FactorPlan::Supernode& node, const std::vector<int>& local,
+                        Eigen::Ref<Eigen::MatrixXd> front) const;
+    //! In place, with the scaled matrix.
+    void solve_scaled(Eigen::MatrixXd& x) const;
+
+    const FactorPlan* plan_;
+    int block_;
+    std::vector<double> values_, factor_;
     Eigen::VectorXd scale_;
-    using PolledMatrix = Eigen::SparseMatrix<PolledDouble, Eigen::ColMajor, int>;
-
-    Eigen::VectorXd solve_scaled(const Eigen::VectorXd& right) const;
-
-    PolledMatrix polled_;
-    Eigen::SimplicialLDLT<PolledMatrix, Eigen::Upper, Eigen::NaturalOrdering<int>> factor_;
-    bool analysed_ = false, has_factor_ = false;
+    bool has_factor_ = false;
 };
 
-//! Solves `matrix` (upper triangle, positive definite) by conjugate gradients, preconditioned by
-//! `precondition`, from zero, until the preconditioned residual is `tolerance` of its start.
+//! Solves `matrix` (positive definite) by conjugate gradients, preconditioned by `precondition`,
+//! from zero, until the preconditioned residual is `tolerance` of its start.
 //! \return nothing when it took more than `limit` iterations, broke down or `cancelled()` said so.
 template <class Precondition, class Cancelled> std::optional<Eigen::VectorXd>
-conjugate_gradients(const ScaledFactor::Matrix& matrix, const Eigen::VectorXd& right, int limit,
+conjugate_gradients(const ScaledFactor& matrix, const Eigen::VectorXd& right, int limit,
                     double tolerance, const Precondition& precondition, const Cancelled& cancelled)
 {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(right.size()), r = right, z = precondition(r), p = z;
@@ -58,7 +64,7 @@ conjugate_gradients(const ScaledFactor::Matrix& matrix, const Eigen::VectorXd& r
     if (rz == 0.0)
         return x;
     for (int i = 0; i < limit && !cancelled(); ++i) {
-        const Eigen::VectorXd q = matrix.selfadjointView<Eigen::Upper>() * p;
+        const Eigen::VectorXd q = matrix.times(p);
         const double curvature = p.dot(q);
         if (!(curvature > 0.0) || !(rz > 0.0))
             return std::nullopt;
