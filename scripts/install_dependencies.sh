@@ -13,8 +13,8 @@ packages=(
     build-essential cmake ninja-build ccache clang-format-14 python3
     libeigen3-dev liblemon-dev libtbb-dev nlohmann-json3-dev libcli11-dev libfmt-dev
     libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev
-    libocct-data-exchange-dev libtinyobjloader-dev libboost-dev
-    libgtest-dev libbenchmark-dev pkg-config)
+    libocct-data-exchange-dev libboost-dev
+    libgtest-dev pkg-config)
 for argument in "$@"; do
     case $argument in
     --render) packages+=(python3-vtk9 python3-numpy xvfb xauth) ;;
