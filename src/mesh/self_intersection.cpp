@@ -11,21 +11,43 @@ namespace bot2nurbs {
 
 namespace {
 
-// Faces a parallel task looks at, and tasks between two looks at the totals. Fixed, so that the
-// place where a search is cut short does not depend on the threads.
-constexpr Index faces_per_task = 256;
+// Leaves of the box tree a parallel task looks at (about 200 faces), and tasks between two looks at
+// the totals. Fixed, so that the place where a search is cut short does not depend on the threads.
+constexpr Index leaves_per_task = 64;
 constexpr Index tasks_per_round = 8;
 
 // Candidate pairs (boxes that meet) after which a search is cut short: a mesh has about 8 a face;
 // only a hopeless soup has 500.
 constexpr std::uint64_t candidates_per_face = 500;
 constexpr std::uint64_t least_candidates = 4000000;
-// A task alone stops here: 4000 a face.
+// A task alone stops here: about 4000 a face.
 constexpr std::uint64_t task_candidates = 1024000;
 
 constexpr int stack_size = 128;
 
 using Triangle = std::array<Vec3, 3>;
+
+struct Item {
+    Box3 box;
+    Triangle corners;
+    Index face;
+};
+
+bool meet(const Box3& a, const Vec3& min, const Vec3& max)
+{
+    return min.x <= a.max.x && max.x >= a.min.x && min.y <= a.max.y && max.y >= a.min.y &&
+           min.z <= a.max.z && max.z >= a.min.z;
+}
+
+//! Sorts and keeps the first `count`.
+void keep_first(std::vector<std::array<Index, 2>>& pairs, Index count)
+{
+    if (pairs.size() > count) {
+        std::nth_element(pairs.begin(), pairs.begin() + count, pairs.end());
+        pairs.resize(count);
+    }
+    std::sort(pairs.begin(), pairs.end());
+}
 
 //! The sides of the plane of s on which the corners of t lie, 0 at once for shared corners.
 std::array<int, 3> sides(const Triangle& t, const Triangle& s)
@@ -141,60 +163,79 @@ SelfIntersections find_self_intersections(const std::vector<Vec3>& positions,
         for (const Index v : triangles[f])
             boxes[f].add(positions[v]);
     const BoxTree tree(boxes);
-    const auto corners = [&](Index f) {
+    const std::vector<BoxTree::Node>& nodes = tree.nodes();
+    std::vector<Index> leaves; // In the order of items.
+    for (Index n = 0; n < nodes.size(); ++n)
+        if (nodes[n].count > 0)
+            leaves.push_back(n);
+    std::sort(leaves.begin(), leaves.end(),
+              [&](Index a, Index b) { return nodes[a].first < nodes[b].first; });
+    // Boxes and corners in the order of the leaves: what is compared lies close in memory.
+    std::vector<Item> items(faces);
+    for (Index i = 0; i < faces; ++i) {
+        const Index f = tree.items()[i];
         const auto& t = triangles[f];
-        return Triangle{positions[t[0]], positions[t[1]], positions[t[2]]};
-    };
+        items[i] = {boxes[f], {positions[t[0]], positions[t[1]], positions[t[2]]}, f};
+    }
+    boxes = {};
     struct Task {
         std::uint64_t count = 0, candidates = 0;
         bool complete = true;
         std::vector<std::array<Index, 2>> pairs;
     };
-    // All pairs (f, g) with g > f, for the faces of one task.
+    // All pairs of an item of one of the leaves and a later item.
     const auto search = [&](Index first, Index last, Task& task) {
-        std::vector<Index> found;
-        for (Index f = first; f < last; ++f) {
-            const Box3& box = boxes[f];
-            const Triangle t = corners(f);
-            found.clear();
+        const auto compare = [&](const Item& a, const Item& b) {
+            if (!meet(a.box, b.box.min, b.box.max))
+                return;
+            ++task.candidates;
+            const Item &s = a.face < b.face ? a : b, &t = a.face < b.face ? b : a;
+            if (!triangles_cross(s.corners, t.corners) || same_corners(s.corners, t.corners))
+                return;
+            ++task.count;
+            task.pairs.push_back({s.face, t.face});
+            if (task.pairs.size() > 2 * std::size_t{kept_pairs})
+                keep_first(task.pairs, kept_pairs);
+        };
+        for (Index l = first; l < last; ++l) {
+            if (task.candidates > task_candidates) {
+                task.complete = false;
+                break;
+            }
+            const BoxTree::Node& leaf = nodes[leaves[l]];
+            const Box3 box{leaf.min, leaf.max};
+            const Index end = leaf.first + leaf.count;
+            for (Index i = leaf.first; i < end; ++i)
+                for (Index j = i + 1; j < end; ++j)
+                    compare(items[i], items[j]);
             Index stack[stack_size];
             int depth = 0;
             stack[depth++] = 0;
             while (depth > 0) {
-                const BoxTree::Node& node = tree.nodes()[stack[--depth]];
-                if (node.min.x > box.max.x || node.max.x < box.min.x || node.min.y > box.max.y ||
-                    node.max.y < box.min.y || node.min.z > box.max.z || node.max.z < box.min.z)
+                const BoxTree::Node& node = nodes[stack[--depth]];
+                if (!meet(box, node.min, node.max))
                     continue;
                 if (node.count == 0) {
                     stack[depth++] = node.first;
                     stack[depth++] = node.first + 1;
                     continue;
                 }
-                for (Index i = node.first; i < node.first + node.count; ++i) {
-                    const Index g = tree.items()[i];
-                    const Box3& other = boxes[g];
-                    if (g <= f || other.min.x > box.max.x || other.max.x < box.min.x ||
-                        other.min.y > box.max.y || other.max.y < box.min.y ||
-                        other.min.z > box.max.z || other.max.z < box.min.z)
-                        continue;
-                    ++task.candidates;
-                    const Triangle s = corners(g);
-                    if (triangles_cross(t, s) && !same_corners(t, s))
-                        found.push_back(g);
-                }
+                if (node.first < end)
+                    continue;
+                for (Index i = leaf.first; i < end; ++i)
+                    if (meet(items[i].box, node.min, node.max))
+                        for (Index j = node.first; j < node.first + node.count; ++j)
+                            compare(items[i], items[j]);
             }
-            std::sort(found.begin(), found.end());
-            task.count += found.size();
-            for (const Index g : found)
-                if (task.pairs.size() < kept_pairs)
-                    task.pairs.push_back({f, g});
         }
+        keep_first(task.pairs, kept_pairs);
     };
 
     SelfIntersections result;
     const std::uint64_t limit = std::max(least_candidates, candidates_per_face * faces);
     std::uint64_t candidates = 0;
-    const Index tasks = (faces + faces_per_task - 1) / faces_per_task;
+    const Index leaf_count = static_cast<Index>(leaves.size());
+    const Index tasks = (leaf_count + leaves_per_task - 1) / leaves_per_task;
     for (Index first = 0; first < tasks; first += tasks_per_round) {
         if (context.cancelled() || candidates > limit) {
             result.complete = false;
@@ -204,7 +245,8 @@ SelfIntersections find_self_intersections(const std::vector<Vec3>& positions,
         std::vector<Task> round(last - first);
         for_each_chunk(context, round.size(), 1, [&](std::size_t i, std::size_t) {
             const Index task = first + static_cast<Index>(i);
-            search(task * faces_per_task, std::min(faces, (task + 1) * faces_per_task), round[i]);
+            search(task * leaves_per_task, std::min(leaf_count, (task + 1) * leaves_per_task),
+                   round[i]);
         });
         if (context.cancelled())
             result.complete = false;
@@ -212,11 +254,12 @@ SelfIntersections find_self_intersections(const std::vector<Vec3>& positions,
             result.count += task.count;
             candidates += task.candidates;
             result.complete = result.complete && task.complete;
-            for (const auto& pair : task.pairs)
-                if (result.pairs.size() < kept_pairs)
-                    result.pairs.push_back(pair);
+            result.pairs.insert(result.pairs.end(), task.pairs.begin(), task.pairs.end());
         }
+        if (result.pairs.size() > 2 * std::size_t{kept_pairs})
+            keep_first(result.pairs, kept_pairs);
     }
+    keep_first(result.pairs, kept_pairs);
     return result;
 }
 

@@ -18,7 +18,8 @@ bool triangles_cross(const std::array<Vec3, 3>& t, const std::array<Vec3, 3>& s)
 
 struct SelfIntersections {
     std::uint64_t count = 0;
-    std::vector<std::array<Index, 2>> pairs; //!< The first, ascending, smaller face first.
+    //! The first of those found, ascending, smaller face first.
+    std::vector<std::array<Index, 2>> pairs;
     bool complete = true; //!< False when cancelled or cut short because of too many pairs.
 };
 
