@@ -32,9 +32,10 @@ constexpr double surplus = 1.2;
 constexpr double carrier_resolution = 0.3;
 // Rounds of Lloyd's relaxation; more move sites by less than a mesh edge.
 constexpr int relaxation_rounds = 8;
-// Refining a carrier adds at most this many faces per face, plus the constant.
+// Refining a carrier adds at most this many vertices per face, plus the constant: a sliver whose
+// area is nothing beside its length would ask for any number.
 constexpr std::size_t max_refinement_factor = 4;
-constexpr std::size_t max_refinement_floor = 200000;
+constexpr std::size_t max_refinement_floor = 20000;
 
 double surface_area(const ManifoldMesh& mesh)
 {
@@ -65,7 +66,7 @@ Index default_patches(double bending, int genus)
 }
 
 // Voronoi sites: enough for the patches wanted, evenly spread, then whatever the conditions ask.
-void place_sites(Tiles& tiles, Index count, LayoutSummary& summary)
+void place_sites(Tiles& tiles, Index count, LayoutSummary& summary, const Context& context)
 {
     // The first site is the vertex farthest from the middle: it does not depend on numbering.
     const ManifoldMesh& mesh = tiles.mesh();
@@ -76,10 +77,10 @@ void place_sites(Tiles& tiles, Index count, LayoutSummary& summary)
             first = v;
     tiles.grow({first});
     tiles.add_farthest(std::min(count, mesh.vertex_count()));
-    for (int round = 0; round < relaxation_rounds; ++round)
+    for (int round = 0; round < relaxation_rounds && !context.cancelled(); ++round)
         tiles.relax();
     const std::size_t before = tiles.sites().size();
-    for (;;) {
+    while (!context.cancelled()) {
         const std::vector<Index> missing = tiles.violations();
         if (missing.empty())
             break;
@@ -167,7 +168,7 @@ Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOption
     const double vertices =
         surplus * static_cast<double>(summary.target_patches) + 2.0 - 2.0 * genus;
     Tiles tiles(carrier.mesh, field.density);
-    place_sites(tiles, static_cast<Index>(std::max(vertices, 4.0)), summary);
+    place_sites(tiles, static_cast<Index>(std::max(vertices, 4.0)), summary, context);
     if (context.cancelled())
         return Context::cancelled_error("layout");
 
