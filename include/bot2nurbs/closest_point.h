@@ -30,13 +30,8 @@ public:
     Hit query(const Vec3& p) const;
     //! The closest point at most `distance_limit` away. Faster the smaller the limit.
     Hit query(const Vec3& p, double distance_limit) const;
-    //! As query(p), to the bit. Faster the closer p is to the face `near`, such as the one hit for
-    //! a neighbour of p; invalid_index stands for none.
-    Hit query_near(const Vec3& p, Index near) const;
 
 private:
-    void search(const Vec3& p, double best, Hit& hit) const;
-
     struct Tree;
     std::shared_ptr<const Tree> tree_;
 };

@@ -153,17 +153,15 @@ std::vector<Place> refined_places(const SplineSurface& surface, const std::vecto
     return refined;
 }
 
-//! distance(position, near) of all places, where `near` is what the last place of a chunk left for
-//! the next. \return nothing when cancelled.
+//! distance(position) of all places. \return nothing when cancelled.
 template <class Distance> std::optional<std::vector<double>>
 measure(const std::vector<Place>& places, const Context& context, const Distance& distance)
 {
     std::vector<double> distances(places.size());
     if (!for_each_chunk(context, places.size(), chunk_places,
                         [&](std::size_t begin, std::size_t end) {
-                            Index near = invalid_index;
                             for (std::size_t i = begin; i < end; ++i)
-                                distances[i] = distance(places[i].position, near);
+                                distances[i] = distance(places[i].position);
                         }))
         return std::nullopt;
     return distances;
@@ -199,19 +197,14 @@ Result<Deviation> measure_deviation(const ManifoldMesh& source, const QuadComple
     {
         const SurfaceLocator locator(complex, surface, seed_cells);
         const std::vector<Place> places = source_places(source);
-        const auto distances = measure(places, context, [&](const Vec3& p, Index& near) {
-            return locator.closest(p, near).distance;
-        });
+        const auto distances =
+            measure(places, context, [&](const Vec3& p) { return locator.closest(p).distance; });
         if (!distances)
             return Context::cancelled_error("deviation");
         summarise(places, *distances, deviation.source_to_surface);
     }
     const ClosestPoint mesh(source);
-    const auto to_source = [&](const Vec3& p, Index& near) {
-        const ClosestPoint::Hit hit = mesh.query_near(p, near);
-        near = hit.where.face;
-        return hit.distance;
-    };
+    const auto to_source = [&](const Vec3& p) { return mesh.query(p).distance; };
     std::vector<Place> places = surface_places(surface);
     auto distances = measure(places, context, to_source);
     if (!distances)

@@ -52,15 +52,7 @@ DomainPoint SurfaceLocator::place(const SourcePoint& where) const
 
 FootPoint SurfaceLocator::closest(const Vec3& p) const
 {
-    Index near = invalid_index;
-    return closest(p, near);
-}
-
-FootPoint SurfaceLocator::closest(const Vec3& p, Index& near) const
-{
-    const SourcePoint where = tree_.query_near(p, near).where;
-    near = where.face;
-    return walk_.descend(p, place(where));
+    return walk_.descend(p, place(tree_.query(p).where));
 }
 
 std::optional<FootPoint> SurfaceLocator::closest_within(const Vec3& p, double limit) const

@@ -19,9 +19,6 @@ public:
 
     //! The foot of p.
     FootPoint closest(const Vec3& p) const;
-    //! The same, faster for points near each other: `near` is kept from call to call, at first
-    //! invalid_index.
-    FootPoint closest(const Vec3& p, Index& near) const;
     //! The foot of p if the tessellation comes within `limit` of it.
     std::optional<FootPoint> closest_within(const Vec3& p, double limit) const;
 

@@ -138,7 +138,6 @@ double box_distance_squared(const BoxTree::Node& box, const Vec3& p)
 struct ClosestPoint::Tree {
     BoxTree boxes;
     std::vector<Corners> triangles; //!< In the order of boxes.items().
-    std::vector<Index> place;       //!< Of every face, in triangles.
 };
 
 ClosestPoint::ClosestPoint(const ManifoldMesh& mesh)
@@ -156,9 +155,7 @@ ClosestPoint::ClosestPoint(const std::vector<Vec3>& positions,
     auto tree = std::make_shared<Tree>();
     tree->boxes = BoxTree(boxes);
     tree->triangles.reserve(triangles.size());
-    tree->place.resize(triangles.size());
     for (const Index f : tree->boxes.items()) {
-        tree->place[f] = static_cast<Index>(tree->triangles.size());
         const auto& t = triangles[f];
         Corners c{positions[t[0]], positions[t[1]], positions[t[2]], f, false};
         const double longest =
@@ -178,27 +175,10 @@ ClosestPoint::Hit ClosestPoint::query(const Vec3& p, double distance_limit) cons
 {
     Hit hit;
     hit.distance = INFINITY;
-    if (distance_limit >= 0.0)
-        search(p, distance_limit * distance_limit, hit);
-    return hit;
-}
-
-ClosestPoint::Hit ClosestPoint::query_near(const Vec3& p, Index near) const
-{
-    Hit hit;
-    hit.distance = INFINITY;
-    double best = INFINITY;
-    if (near < tree_->place.size())
-        offer(p, tree_->triangles[tree_->place[near]], best, hit);
-    search(p, best, hit);
-    return hit;
-}
-
-void ClosestPoint::search(const Vec3& p, double best, Hit& hit) const
-{
     const auto& nodes = tree_->boxes.nodes();
-    if (nodes.empty())
-        return;
+    double best = distance_limit * distance_limit;
+    if (nodes.empty() || !(distance_limit >= 0.0))
+        return hit;
     struct Open {
         Index node;
         double distance;
@@ -227,6 +207,7 @@ void ClosestPoint::search(const Vec3& p, double best, Hit& hit) const
     }
     if (hit.where.face != invalid_index)
         hit.distance = std::sqrt(best);
+    return hit;
 }
 
 } // namespace bot2nurbs
