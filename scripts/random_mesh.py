@@ -273,6 +273,8 @@ def cubes_surface(full, faces):
 
 
 def largest_component(vertices, triangles):
+    if len(triangles) == 0:
+        return Mesh(vertices[:0], triangles)
     label = np.arange(len(vertices))
     while True:
         low = label[triangles].min(1)
@@ -496,7 +498,7 @@ def base(rng, faces):
                 if 0.8 < ratio < 1.25:
                     break
                 cell *= np.clip(np.sqrt(ratio), 0.3, 2.0)
-        if 0 <= mesh.genus <= MAX_GENUS and not fault(mesh):
+        if len(mesh.triangles) and mesh.genus <= MAX_GENUS and not fault(mesh):
             mesh.recipe.append(kind.__name__)
             return mesh
 
