@@ -3,9 +3,10 @@
 # Installs what is missing to build and test bot2nurbs on Debian 12 (or a system with its packages).
 # Works as root, or through sudo. Does nothing, and needs no network, where nothing is missing.
 #
-#   scripts/install_dependencies.sh [--render] [--tidy]
+#   scripts/install_dependencies.sh [--render] [--tidy] [--bench]
 #
-# --render adds what scripts/render.py needs, --tidy what scripts/tidy.sh needs.
+# --render adds what scripts/render.py needs, --tidy what scripts/tidy.sh needs, --bench what
+# BOT2NURBS_BENCH needs.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -13,14 +14,14 @@ packages=(
     build-essential cmake ninja-build ccache clang-format-14 python3
     libeigen3-dev liblemon-dev libtbb-dev nlohmann-json3-dev libcli11-dev libfmt-dev
     libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev
-    libocct-data-exchange-dev libboost-dev
-    libgtest-dev pkg-config)
+    libocct-data-exchange-dev libboost-dev libgtest-dev pkg-config)
 for argument in "$@"; do
     case $argument in
     --render) packages+=(python3-vtk9 python3-numpy xvfb xauth) ;;
     --tidy) packages+=(clang-tidy-16) ;;
+    --bench) packages+=(libbenchmark-dev) ;;
     *)
-        echo "usage: scripts/install_dependencies.sh [--render] [--tidy]" >&2
+        echo "usage: scripts/install_dependencies.sh [--render] [--tidy] [--bench]" >&2
         exit 2
         ;;
     esac
