@@ -73,10 +73,11 @@ void Tiles::propagate(const std::vector<Index>& seeds)
             improve(p, d + vp, label);
             improve(q, d + vq, label);
             const double pq = scale * norm(mesh_.position(p) - mesh_.position(q));
+            // Never nearer than the vertex just done: rounding on needles must not start it again.
             if (label_[q] == label && distance_[q] <= d && vq > 0.0)
-                improve(p, unfolded_distance(vq, vp, pq, d, distance_[q]), label);
+                improve(p, std::max(d, unfolded_distance(vq, vp, pq, d, distance_[q])), label);
             if (label_[p] == label && distance_[p] <= d && vp > 0.0)
-                improve(q, unfolded_distance(vp, vq, pq, d, distance_[p]), label);
+                improve(q, std::max(d, unfolded_distance(vp, vq, pq, d, distance_[p])), label);
             h = mesh_.twin(mesh_.prev(h));
         } while (h != first);
     }
@@ -156,11 +157,12 @@ std::vector<Index> Tiles::violations() const
     std::vector<Index> offset, members, result;
     list_members(offset, members);
     const auto farther = [this](Index a, Index b) {
-        // Of two candidates the one farther from its site; invalid loses, ties to the smaller
-        // index.
-        if (b == invalid_index || distance_[b] <= 0.0)
+        // Of two candidates the one farther from its site; sites lose (by what they are, not by
+        // their distance, which a vertex at the end of an edge without length shares), ties to the
+        // smaller index.
+        if (b == invalid_index || sites_[label_[b]] == b)
             return a;
-        if (a == invalid_index || distance_[a] <= 0.0)
+        if (a == invalid_index || sites_[label_[a]] == a)
             return b;
         return distance_[b] > distance_[a] || (distance_[b] == distance_[a] && b < a) ? b : a;
     };

@@ -130,5 +130,18 @@ TEST(Tiles, are_narrower_where_the_density_is_higher)
     EXPECT_NEAR(static_cast<double>(above), 80.0, 6.0);
 }
 
+TEST(Tiles, end_on_needles_and_on_edges_without_length)
+{
+    for (const double flat : {1e-6, 0.0}) {
+        const ManifoldMesh mesh = moved(icosphere(2), [flat](const Vec3& p) {
+            return Vec3{p.x, flat * p.y, flat * p.z};
+        });
+        const Tiles tiles = sound_tiles(mesh, 8);
+        for (const Index s : tiles.sites())
+            EXPECT_LT(s, mesh.vertex_count());
+        EXPECT_TRUE(tiles.violations().empty());
+    }
+}
+
 } // namespace
 } // namespace bot2nurbs::fixtures
