@@ -51,6 +51,16 @@ std::optional<Error> refuse_repairs(const RepairedMesh& mesh)
     return std::nullopt;
 }
 
+std::optional<Error> refuse_flat(const RepairedMesh& mesh)
+{
+    for (const RepairNote& note : mesh.notes)
+        if (note.code == "no_volume")
+            return Error{ErrorCode::bad_geometry,
+                         note.message + ". A solid needs volume: remove such components",
+                         invalid_index};
+    return std::nullopt;
+}
+
 std::optional<Error> refuse_self_intersections(const MeshReport& found)
 {
     if (found.self_intersecting_pairs == 0)
@@ -70,6 +80,8 @@ std::optional<Error> refuse(const ConvertOptions& options, const RepairedMesh& m
         if (std::optional<Error> refused = refuse_repairs(mesh))
             return refused;
     if (std::optional<Error> refused = refuse_open(mesh))
+        return refused;
+    if (std::optional<Error> refused = refuse_flat(mesh))
         return refused;
     return options.strict ? refuse_self_intersections(found) : std::nullopt;
 }

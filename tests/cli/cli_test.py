@@ -247,6 +247,11 @@ class BadInput(CliTest):
         self.assertIn("vertex", run.stderr)
         self.assertIn("not supported yet", run.stderr)
 
+    def test_a_closed_mesh_without_volume_is_rejected(self):
+        vertices, faces = read_obj(SPHERE)
+        mesh = self.write("a.off", off([(x, y, 0.0) for x, y, _ in vertices], faces))
+        self.assert_refused(5, "no volume", mesh, "a.3dm")
+
     def test_a_non_manifold_mesh_is_rejected_with_the_edge(self):
         vertices, faces = read_obj(SPHERE)
         a, b, _ = faces[0]
