@@ -18,8 +18,8 @@ struct LayoutSummary {
     Index sites = 0;       //!< Voronoi sites after the conditions hold.
     Index sites_added = 0; //!< Of these, added because a condition failed.
     Index target_patches = 0;
-    Index uniform_maps = 0;  //!< Charts that needed uniform weights.
-    Index exact_maps = 0;    //!< Charts that needed the exact fallback.
+    //! Charts that needed uniform weights, and the exact fallback; counted when charts are made.
+    Index uniform_maps = 0, exact_maps = 0;
     bool subdivided = false; //!< The triangle-to-three-quads fallback was used.
     std::vector<std::string> notes;
 };

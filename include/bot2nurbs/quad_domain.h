@@ -57,6 +57,9 @@ struct QuadDomain {
     std::string origin; //!< "eck", "supplied", ...
 };
 
+//! How the weights of a convex map were chosen: each is tried when the one before folds in doubles.
+enum class MapLevel { harmonic, uniform, exact };
+
 //! The map of one quad's region to the unit square: the overlay of the carrier's faces with the
 //! region, each vertex with its place on the source and its parameters.
 struct QuadChart {
@@ -67,6 +70,7 @@ struct QuadChart {
     std::vector<Vertex> vertices;
     std::vector<std::array<Index, 3>> triangles;
     std::vector<Index> source_face; //!< Per triangle.
+    MapLevel level = MapLevel::harmonic;
     std::vector<std::array<std::array<double, 3>, 3>>
         bary; //!< Per triangle corner: weights in source_face.
 };

@@ -1,37 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "brep/brep_rules.h"
 
+#include "core/disjoint_sets.h"
+
 #include <numeric>
 
 namespace bot2nurbs {
 
 namespace {
-
-//! Disjoint sets of 0 .. n - 1; the smallest member stands for its set.
-class DisjointSets {
-public:
-    explicit DisjointSets(std::size_t n) : parent_(n)
-    {
-        std::iota(parent_.begin(), parent_.end(), Index{0});
-    }
-    Index find(Index i)
-    {
-        while (parent_[i] != i)
-            i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(Index a, Index b)
-    {
-        a = find(a), b = find(b);
-        if (a < b)
-            parent_[b] = a;
-        else
-            parent_[a] = b;
-    }
-
-private:
-    std::vector<Index> parent_;
-};
 
 bool runs_with_outside(const Brep& brep, const BrepTrim& trim)
 {

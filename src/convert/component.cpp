@@ -145,6 +145,11 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
     const Result<std::vector<QuadChart>> charts = compute_charts(*unit, result.domain, context);
     if (!charts)
         return charts.error();
+    if (outcome.layout)
+        for (const QuadChart& chart : *charts) {
+            outcome.layout->uniform_maps += chart.level == MapLevel::uniform;
+            outcome.layout->exact_maps += chart.level == MapLevel::exact;
+        }
     stage("samples");
     Result<SurfaceSampleSet> samples = make_samples(*unit, *charts, {}, context);
     if (!samples)

@@ -14,12 +14,13 @@ namespace bot2nurbs {
 namespace {
 
 QuadChart make_chart(const ManifoldMesh& source, const CarrierMesh& carrier, const Overlay& overlay,
-                     const std::vector<Vec2>& uv)
+                     const ConvexMap& map)
 {
     QuadChart chart;
     chart.vertices.resize(overlay.vertices.size());
     for (std::size_t i = 0; i < overlay.vertices.size(); ++i)
-        chart.vertices[i] = {overlay.vertices[i].position, uv[i]};
+        chart.vertices[i] = {overlay.vertices[i].position, map.uv[i]};
+    chart.level = map.level;
     chart.triangles = overlay.triangles;
     chart.source_face.resize(overlay.triangles.size());
     chart.bary.resize(overlay.triangles.size());
@@ -84,7 +85,7 @@ Result<std::vector<QuadChart>> compute_charts(const ManifoldMesh& source, const 
                     failure[q] = "its region cannot be mapped to the square without folds";
                     continue;
                 }
-                charts[q] = make_chart(source, domain.carrier, *overlay, map->uv);
+                charts[q] = make_chart(source, domain.carrier, *overlay, *map);
             }
         });
     if (!finished)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "domain/path_arrangement.h"
 
+#include "core/disjoint_sets.h"
+
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -13,30 +15,6 @@ std::string number(std::size_t i)
 {
     return std::to_string(i);
 }
-
-//! Sets that are joined step by step.
-class DisjointSets {
-public:
-    explicit DisjointSets(Index count) : parent_(count)
-    {
-        for (Index i = 0; i < count; ++i)
-            parent_[i] = i;
-    }
-    Index find(Index i)
-    {
-        while (parent_[i] != i)
-            i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(Index a, Index b)
-    {
-        a = find(a), b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<Index> parent_;
-};
 
 } // namespace
 

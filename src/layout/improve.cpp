@@ -68,7 +68,7 @@ public:
                 ++valence_[p.geometry.a], ++valence_[p.geometry.b];
     }
 
-    QuadImprovement run()
+    void run()
     {
         find_states(0);
         const int passes = sides_ == 3 ? triangle_passes : quad_passes;
@@ -88,7 +88,6 @@ public:
             if (!context_.cancelled())
                 remove_doublets(true);
         }
-        return done_;
     }
 
 private:
@@ -218,7 +217,6 @@ private:
     std::vector<int> valence_;        // Per mesh vertex.
     std::vector<FaceState> states_;   // Per face.
     std::vector<Index> vertex_tried_; // Per mesh vertex: number of faces at the last relocation.
-    QuadImprovement done_;
 };
 
 void Improver::remove_doublets(bool all)
@@ -250,7 +248,6 @@ void Improver::remove_doublets(bool all)
             }
             valence_[v] = 0;
             --valence_[a], --valence_[b];
-            ++done_.doublets;
             changed = true;
         }
     }
@@ -318,7 +315,6 @@ bool Improver::rotate_to_doublet(const Side& at_v, double limit)
     const SurfacePath& gone = complex_.paths()[best->path].geometry;
     --valence_[gone.a], --valence_[gone.b];
     ++valence_[v], ++valence_[complex_.start(best->border[best->to])];
-    ++done_.rotations;
     return true;
 }
 
@@ -353,7 +349,6 @@ void Improver::rotate_edges()
                                   cost(valence_[d] + 1) - cost(valence_[d]);
             if (attempt(faces, *border, {{ic, id}}, change)) {
                 --valence_[a], --valence_[b], ++valence_[c], ++valence_[d];
-                ++done_.rotations;
                 break;
             }
         }
@@ -400,7 +395,6 @@ bool Improver::try_collapse(const Side& at_v)
     valence_[v] = 0;
     --valence_[e0], --valence_[e1];
     valence_[w] += static_cast<int>(n) - 2;
-    ++done_.collapses;
     return true;
 }
 
@@ -471,7 +465,6 @@ void Improver::relocate_vertices()
         if (attempt(faces, *border, chords, 0.0, &*disk, center)) {
             valence_[v] = 0;
             valence_[center] = static_cast<int>(n);
-            ++done_.relocations;
         }
         vertex_tried_[center] = static_cast<Index>(complex_.faces().size());
         vertex_tried_[v] = vertex_tried_[center];
@@ -504,12 +497,11 @@ void improve_triangles(PatchComplex& complex, const SizeMetric& metric, Context&
     complex.compact();
 }
 
-QuadImprovement improve_quads(PatchComplex& complex, Index min_quads, const SizeMetric& metric,
-                              Context& context)
+void improve_quads(PatchComplex& complex, Index min_quads, const SizeMetric& metric,
+                   Context& context)
 {
-    const QuadImprovement done = Improver(complex, 4, min_quads, metric, context).run();
+    Improver(complex, 4, min_quads, metric, context).run();
     complex.compact();
-    return done;
 }
 
 } // namespace bot2nurbs

@@ -11,15 +11,11 @@ namespace bot2nurbs {
 //! than six. Vertices of low valence would become vertices of degree two in K.
 void improve_triangles(PatchComplex& complex, const SizeMetric& metric, Context& context);
 
-struct QuadImprovement {
-    Index rotations = 0, collapses = 0, doublets = 0, relocations = 0;
-};
-
 //! Improves K: removes vertices of degree two, rotates edges, collapses quads along a diagonal,
 //! moves vertices to the middle of their star and straightens edges, as long as that lowers the
 //! sum of the quads' energies and a penalty for valences other than four. The number of quads only
 //! falls while more than `min_quads` remain.
-QuadImprovement improve_quads(PatchComplex& complex, Index min_quads, const SizeMetric& metric,
-                              Context& context);
+void improve_quads(PatchComplex& complex, Index min_quads, const SizeMetric& metric,
+                   Context& context);
 
 } // namespace bot2nurbs

@@ -17,7 +17,7 @@ namespace bot2nurbs {
 namespace {
 
 // The default number of patches is the shape's bending, k1^2 + k2^2 integrated, between bounds: 25
-// on any sphere, 105 on a torus with radii 1 and 0.4. The upper bound keeps fits fast and B-Reps
+// on any sphere, 108 on a torus with radii 1 and 0.4. The upper bound keeps fits fast and B-Reps
 // easy to handle; a tolerance or --patches asks for more.
 constexpr double min_default_patches = 24.0;
 constexpr double max_default_patches = 150.0;
@@ -159,8 +159,12 @@ Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOption
         limit[v] = carrier_resolution * width / field.density[v];
     CarrierMesh carrier = refine_carrier(
         source, limit, max_refinement_floor + max_refinement_factor * source.face_count());
-    if (carrier.refined)
+    if (carrier.refined) {
+        summary.notes.push_back("edges split where the mesh is coarse for its patches: " +
+                                std::to_string(source.face_count()) + " faces became " +
+                                std::to_string(carrier.mesh.face_count()));
         field = measure_size_field(carrier.mesh, curvature_scale * source.box().diagonal());
+    }
     if (context.cancelled())
         return Context::cancelled_error("layout");
 
@@ -202,6 +206,7 @@ Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOption
             return finish(*complex, carrier);
     }
     summary.subdivided = true;
+    summary.notes.push_back("triangles split in three quads each");
     Result<SplitComplex> split = split_in_quads(*complex, source, carrier, context);
     if (!split)
         return split.error();

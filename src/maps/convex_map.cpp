@@ -186,7 +186,7 @@ std::optional<ConvexMap> map_to_polygon(const Overlay& overlay, const std::vecto
 
 MapDistortion measure_distortion(const Overlay& overlay, const std::vector<Vec2>& uv)
 {
-    double energy = 0.0, area = 0.0, stretch_squared = 0.0, max_stretch = 0.0, source_area = 0.0;
+    double energy = 0.0, area = 0.0, stretch_squared = 0.0, source_area = 0.0;
     for (const auto& t : overlay.triangles) {
         const Vec3 p = overlay.vertices[t[1]].position - overlay.vertices[t[0]].position;
         const Vec3 q = overlay.vertices[t[2]].position - overlay.vertices[t[0]].position;
@@ -200,21 +200,16 @@ MapDistortion measure_distortion(const Overlay& overlay, const std::vector<Vec2>
         const double pp = dot(p, p), pq = dot(p, q), qq = dot(q, q);
         const double aa = dot(a, a), ab = dot(a, b), bb = dot(b, b);
         energy += 0.25 * (aa * qq - 2.0 * ab * pq + bb * pp) / twice_source;
-        // First fundamental form of the inverse map: columns of (p q) (a b)^-1.
+        // Columns of the inverse map's derivative, (p q) (a b)^-1.
         const Vec3 su = (b.y * p - a.y * q) / twice_target;
         const Vec3 sv = (a.x * q - b.x * p) / twice_target;
-        const double E = dot(su, su), F = dot(su, sv), G = dot(sv, sv);
-        const double mean = 0.5 * (E + G);
-        const double largest = mean + std::sqrt(std::max(0.0, mean * mean - (E * G - F * F)));
-        stretch_squared += 0.5 * twice_source * mean;
-        max_stretch = std::max(max_stretch, std::sqrt(largest));
+        stretch_squared += 0.25 * twice_source * (norm_squared(su) + norm_squared(sv));
     }
     MapDistortion d;
     if (area > 0.0)
         d.dirichlet = energy / area;
     if (stretch_squared > 0.0 && source_area > 0.0) {
         d.stretch = stretch_squared / source_area * area / source_area;
-        d.max_stretch = max_stretch / std::sqrt(stretch_squared / source_area);
     }
     return d;
 }

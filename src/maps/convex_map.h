@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "bot2nurbs/quad_domain.h"
 #include "maps/overlay.h"
 
 #include <vector>
 
 namespace bot2nurbs {
-
-//! How the weights of a convex map were chosen: each is tried when the one before folds in doubles.
-enum class MapLevel { harmonic, uniform, exact };
 
 //! A map of an overlay to a convex polygon.
 struct ConvexMap {
@@ -43,7 +41,6 @@ struct MapDistortion {
     //! Square of the L2 stretch of the inverse map, normalised by both areas: 1 for a similarity,
     //! large where much surface is squeezed into little of the plane. \cite sander_2001
     double stretch = 0.0;
-    double max_stretch = 0.0; //!< Largest singular value of the inverse map, over its L2 mean.
 
     //! One number for both: 1 for a similarity, larger for anything else.
     double combined() const { return 0.5 * (dirichlet + stretch); }

@@ -4,6 +4,7 @@
 #include "layout/pair_triangles.h"
 #include "layout/split_in_quads.h"
 
+#include "maps/patches.h"
 #include "mesh_fixtures.h"
 
 #include <gtest/gtest.h>
@@ -13,14 +14,6 @@
 
 namespace bot2nurbs::fixtures {
 namespace {
-
-double area(const ManifoldMesh& mesh)
-{
-    double sum = 0.0;
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        sum += 0.5 * norm(mesh.area_vector(f));
-    return sum;
-}
 
 PatchComplex base_complex(const ManifoldMesh& mesh, Index sites)
 {
@@ -52,7 +45,7 @@ void expect_sound(PatchComplex& complex, Index sides, const std::string& what)
                    norm(cross(overlay->vertices[t[1]].position - overlay->vertices[t[0]].position,
                               overlay->vertices[t[2]].position - overlay->vertices[t[0]].position));
     }
-    EXPECT_NEAR(sum, area(complex.mesh()), 1e-9 * area(complex.mesh())) << what;
+    EXPECT_NEAR(sum, surface_area(complex.mesh()), 1e-9 * surface_area(complex.mesh())) << what;
     std::map<std::pair<Index, double>, int> crossings;
     for (const auto& p : complex.paths())
         if (p.alive)
@@ -135,7 +128,7 @@ TEST(QuadLayout, pairs_every_triangle_and_stays_sound_through_improvement)
         EXPECT_EQ(2 * complex.face_count(), triangles) << name;
         expect_sound(complex, 4, name + " paired");
         const std::vector<double> density(mesh.vertex_count(), 1.0);
-        improve_quads(complex, 6, {density, area(mesh) / 12.0}, context);
+        improve_quads(complex, 6, {density, surface_area(mesh) / 12.0}, context);
         expect_sound(complex, 4, name + " improved");
     }
 }
@@ -155,7 +148,7 @@ TEST(QuadLayout, improvement_lowers_distortion_and_leaves_few_extraordinary_vert
     };
     const double before = mean_distortion();
     const std::vector<double> density(mesh.vertex_count(), 1.0);
-    improve_quads(complex, 60, {density, area(mesh) / 60.0}, context);
+    improve_quads(complex, 60, {density, surface_area(mesh) / 60.0}, context);
     EXPECT_LT(mean_distortion(), before);
     std::map<Index, int> valence;
     for (const auto& p : complex.paths())
@@ -182,7 +175,7 @@ TEST(QuadLayout, splitting_every_triangle_in_three_quads_is_sound_too)
         const CarrierMesh& carrier = *split->carrier;
         for (Index v = 0; v < carrier.mesh.vertex_count(); ++v)
             ASSERT_LT(norm(mesh.at(carrier.vertex_source[v]) - carrier.mesh.position(v)), 1e-13);
-        EXPECT_NEAR(area(carrier.mesh), area(mesh), 1e-10 * area(mesh));
+        EXPECT_NEAR(surface_area(carrier.mesh), surface_area(mesh), 1e-10 * surface_area(mesh));
         EXPECT_EQ(carrier.mesh.genus(), genus);
     }
 }

@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "layout/refine_carrier.h"
 
+#include "maps/patches.h"
 #include "mesh_fixtures.h"
 
 #include <gtest/gtest.h>
 
 namespace bot2nurbs::fixtures {
 namespace {
-
-double area(const ManifoldMesh& mesh)
-{
-    double sum = 0.0;
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        sum += 0.5 * norm(mesh.area_vector(f));
-    return sum;
-}
 
 TEST(RefineCarrier, leaves_no_edge_longer_than_the_limit_and_the_surface_as_it_was)
 {
@@ -25,7 +18,7 @@ TEST(RefineCarrier, leaves_no_edge_longer_than_the_limit_and_the_surface_as_it_w
         const ManifoldMesh& fine = carrier.mesh;
         for (Index h = 0; h < fine.halfedge_count(); ++h)
             ASSERT_LE(norm(fine.position(fine.from(h)) - fine.position(fine.to(h))), limit) << name;
-        EXPECT_NEAR(area(fine), area(mesh), 1e-12 * area(mesh)) << name;
+        EXPECT_NEAR(surface_area(fine), surface_area(mesh), 1e-12 * surface_area(mesh)) << name;
         EXPECT_TRUE(fine.closed());
         EXPECT_EQ(fine.genus(), genus);
         // Every corner of every face lies on the face's source face, at its provenance.
