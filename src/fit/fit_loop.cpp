@@ -37,9 +37,10 @@ constexpr double huber = 1.345;
 constexpr double mad_to_deviation = 1.4826;
 //! Distances below this share of the box are rounding, not noise, and get full weight.
 constexpr double least_deviation = 1e-12;
-//! Times a round is solved again because it folds the surface somewhere: first these quads are
-//! held, then damped by 1, 10 and 100; what folds even then is shortened.
-constexpr int max_answers = 4;
+//! Times a round is solved again because it folds the surface somewhere. Once does for nearly all
+//! of it; more cost a solve each and gain nothing that is measurable, as the shortened moves are
+//! few.
+constexpr int max_answers = 1;
 //! Moves that fold are halved three times where they do before they are left out, with more and
 //! more neighbours.
 constexpr int halvings = 3;
@@ -164,7 +165,8 @@ std::vector<FitRow> FitLoop::rows_at(const State& state, const std::vector<doubl
         const SurfacePoint& s = state.feet[i].surface;
         row.residual = points[i] - s.position;
         // The distance to a rim grows in every direction across it.
-        if (!response_.held(d.quad) && !walk.on_sharp_edge(d))
+        row.least_mu = response_.least_mu(d.quad);
+        if (!walk.on_sharp_edge(d))
             row.normal = normalized(cross(s.du, s.dv));
     }
     return rows;
@@ -238,7 +240,6 @@ NormalSystem::Solution FitLoop::solve(const State& state, const std::vector<FitR
     problem.groups = &groups;
     problem.bezier = &state.surface.bezier();
     problem.fairness = &fairness_;
-    problem.damping = response_.damping();
     problem.mu = mu;
     NormalSystem::Solution solution = system_.solve(problem, options_.condition_limit, context_);
     if (!solution.ok && mu >= 1.0 && !context_.cancelled()) {
@@ -270,7 +271,6 @@ Status FitLoop::first_round(State& state)
 Status FitLoop::next_round(State& state, double& mu, bool& stuck)
 {
     lower_fairness(fairness_decay);
-    response_.begin_round();
     const std::vector<double> factors = robust_factors(state);
     for (int answers = 0;;) {
         NormalSystem::Solution solution = solve(state, rows_at(state, factors), mu);
@@ -284,9 +284,11 @@ Status FitLoop::next_round(State& state, double& mu, bool& stuck)
         if (solution.ok) {
             State next = moved(state, solution.move);
             const std::vector<Index> folded = more_folded(state.folds, next.folds);
+            // Fairness that falls further is one thing that folds a surface, sliding is the other.
+            if (!folded.empty())
+                response_.respond(folded, mu);
             if (!folded.empty() && answers++ < max_answers) {
-                // Fairness that falls further is what most often folds a surface.
-                for (const Index q : response_.respond(folded))
+                for (const Index q : folded)
                     floor_[q] = level_[q] = std::max(floor_[q], last_level_[q]);
                 apply_fairness();
                 continue;

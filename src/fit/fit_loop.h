@@ -51,7 +51,7 @@ private:
     State moved_without_folds(const State& state, std::vector<Vec3> move) const;
     //! Adds the feet; none when cancelled.
     void find_feet(State& state) const;
-    //! Rows of all samples; of those on held quads point-distance rows.
+    //! Rows of all samples, as the fold response wants them.
     std::vector<FitRow> rows_at(const State& state, const std::vector<double>& factors) const;
     //! Huber weights from the distances; all one unless robust.
     std::vector<double> robust_factors(const State& state) const;

@@ -10,37 +10,28 @@ namespace bot2nurbs {
 
 //! What is done about the quads that a step would fold, and about no others.
 //!
-//! A quad that folds is *held* for the rest of the fit: its samples keep point-distance rows and
-//! its fairness falls no further. One that folds again is damped in this round, with the quads
-//! around it, more from time to time. Damping shortens the step and any step is allowed, so a spot
-//! that must not move does not stop the others.
+//! For the rest of the fit the samples of such a quad slide less: their rows get more of a
+//! point-distance part each time it folds. What of a step folds even so is shortened there. Any
+//! move of the unknowns is allowed, so a spot that must not move does not stop the others.
 class FoldResponse {
 public:
     //! Both must outlive this.
     FoldResponse(const QuadComplex& complex, const ReducedNetwork& reduced);
 
-    //! Forgets the damping, not the holds.
-    void begin_round();
-    //! Answers a step that folded these quads. \return the quads that are held from now on.
-    std::vector<Index> respond(const std::vector<Index>& folded);
-    bool held(Index quad) const { return held_[quad]; }
-    //! Per free unknown, for the solve; null when there is none.
-    const std::vector<double>* damping() const { return damped_ ? &damping_ : nullptr; }
+    //! Answers a step with this point-distance part that folded these quads.
+    void respond(const std::vector<Index>& folded, double mu);
+    //! Point-distance part of the rows of a quad, at least.
+    double least_mu(Index quad) const { return least_mu_[quad]; }
 
-    //! Multiplies the moves of all unknowns of the quads; those near to them on the rim of the
-    //! quads' neighbours move in full.
+    //! Multiplies the moves of all unknowns that these quads depend on.
     void shorten(const std::vector<Index>& quads, double share, std::vector<Vec3>& move) const;
     //! The quads and all that share a vertex with them, ascending.
     std::vector<Index> with_neighbours(const std::vector<Index>& quads) const;
 
 private:
-    void damp(Index quad, double damping);
-
     const QuadComplex& complex_;
     const ReducedNetwork& reduced_;
-    std::vector<char> held_;
-    std::vector<double> quad_damping_, damping_;
-    bool damped_ = false;
+    std::vector<double> least_mu_;
 };
 
 //! The quads with more folds than before, ascending.

@@ -16,10 +16,10 @@ namespace {
 constexpr Index batch_pieces = 512;
 constexpr Index chunk_pieces = 16;
 //! Conjugate gradients with the factor of an earlier round: at most this many iterations, which
-//! cost about as much as half a factorisation, down to this share of the preconditioned residual:
-//! far below what moving feet change about a round.
-constexpr int reuse_iterations = 30;
-constexpr double reuse_tolerance = 1e-4;
+//! cost less than half a factorisation (a factor that is any good does with them), down to this
+//! share of the preconditioned residual: far below what moving feet change about a round.
+constexpr int reuse_iterations = 10;
+constexpr double reuse_tolerance = 1e-3;
 //! Coefficient pairs (i <= j) of a piece.
 constexpr int pairs16 = 136;
 
@@ -39,7 +39,6 @@ void accumulate_rows(const RoundProblem& problem, Index piece, int blocks, Piece
 {
     double upper[6][pairs16] = {};
     double right[16][3] = {};
-    const double mu = problem.mu;
     for (std::size_t o = problem.groups->offset[piece]; o < problem.groups->offset[piece + 1];
          ++o) {
         const FitRow& row = (*problem.rows)[problem.groups->order[o]];
@@ -48,6 +47,7 @@ void accumulate_rows(const RoundProblem& problem, Index piece, int blocks, Piece
         for (int i = 0; i < 16; ++i)
             phi[i] = bs[i / 4] * bt[i % 4];
         const Vec3 &n = row.normal, &r = row.residual;
+        const double mu = std::max(problem.mu, row.least_mu);
         // A row without a normal counts in full in every direction.
         const double along = n == Vec3{} ? 0.0 : (1.0 - mu) * row.weight;
         const double all = n == Vec3{} ? row.weight : mu * row.weight;
@@ -216,31 +216,12 @@ bool NormalSystem::assemble(const RoundProblem& problem, bool coupled, const Con
     return true;
 }
 
-void NormalSystem::add_damping(const std::vector<double>& damping, int blocks)
-{
-    std::vector<double>& values = (blocks == 1 ? scalar_ : coupled_).values();
-    for (std::size_t i = 0; i < damping.size(); ++i) {
-        // The diagonal is the last entry of its column.
-        const auto slot = static_cast<std::size_t>(plan_.column[plan_.place[i] + 1] - 1);
-        double* d = &values[slot * blocks];
-        if (blocks == 1) {
-            d[0] += damping[i] * d[0];
-            continue;
-        }
-        const double added = damping[i] * (d[0] + d[3] + d[5]) / 3.0;
-        for (const int k : {0, 3, 5})
-            d[k] += added;
-    }
-}
-
 NormalSystem::Solution NormalSystem::solve(const RoundProblem& problem, double condition_limit,
                                            const Context& context)
 {
     const bool coupled = problem.mu < 1.0;
     if (!assemble(problem, coupled, context))
         return {};
-    if (problem.damping)
-        add_damping(*problem.damping, coupled ? 6 : 1);
     return coupled ? solve_coupled(condition_limit, context)
                    : solve_decoupled(condition_limit, context);
 }
@@ -277,7 +258,7 @@ Eigen::VectorXd NormalSystem::solve_by_scalar(const Eigen::VectorXd& right) cons
     const Eigen::Index n = scalar_.size();
     Eigen::VectorXd x(3 * n);
     Eigen::Map<Columns>(x.data(), n, 3) =
-        scalar_.solve(Eigen::Map<const Columns>(right.data(), n, 3));
+        scalar_.solve_three(Eigen::Map<const Columns>(right.data(), n, 3));
     return x;
 }
 

@@ -14,8 +14,9 @@ struct FitRow {
     Index piece = invalid_index;
     double s = 0.0, t = 0.0; //!< Parameters in the piece, in [0, 1].
     double weight = 0.0;
-    Vec3 residual; //!< Sample minus surface point: the wanted move.
-    Vec3 normal;   //!< Unit normal of the surface there; zero: all directions count alike.
+    Vec3 residual;         //!< Sample minus surface point: the wanted move.
+    Vec3 normal;           //!< Unit normal of the surface there; zero: all directions count alike.
+    double least_mu = 0.0; //!< See RoundProblem.
 };
 
 //! Rows grouped by piece: rows of piece p are order[offset[p]] .. order[offset[p + 1] - 1], in the
@@ -30,16 +31,14 @@ RowsByPiece group_by_piece(const std::vector<FitRow>& rows, Index piece_count);
 //!
 //! Over moves d of the free unknowns it minimises
 //!   sum_i w_i [(1 - mu) (n_i . (r_i - d_i))^2 + mu |r_i - d_i|^2] + sum_q f_q E_q(x + d)
-//! with d_i the surface's move at row i and E_q the exact thin-plate energy of quad q. Damping adds
-//! to every unknown's diagonal (the mean of its three) that many times itself: it shortens the step
-//! and leaves the gradient alone, so that it does not change what the rounds converge to.
+//! with mu the problem's or, where that is larger, the row's own, d_i the surface's move at row i
+//! and E_q the exact thin-plate energy of quad q.
 struct RoundProblem {
     const std::vector<FitRow>* rows = nullptr;
     const RowsByPiece* groups = nullptr;
     const std::vector<Vec3>* bezier = nullptr;     //!< 169 per quad; empty: all zero.
     const std::vector<double>* fairness = nullptr; //!< f_q.
     double mu = 1.0;                               //!< 1: point-distance rows.
-    const std::vector<double>* damping = nullptr;  //!< Per free unknown; null: none.
 };
 
 //! The normal equations of a round, assembled piece by piece in Bezier coefficients and scattered
@@ -69,7 +68,6 @@ public:
 
 private:
     bool assemble(const RoundProblem& problem, bool coupled, const Context& context);
-    void add_damping(const std::vector<double>& damping, int blocks);
     Solution solve_decoupled(double condition_limit, const Context& context);
     Solution solve_coupled(double condition_limit, const Context& context);
     //! Values per unknown in the order of the columns, as moves.

@@ -31,8 +31,10 @@ public:
     bool has_factor() const { return has_factor_; }
     //! Forgets a factor that is not to be trusted.
     void drop_factor() { has_factor_ = false; }
-    //! Solves with the matrix that was factorised last, every column. \pre has_factor()
-    Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
+    //! Solves with the matrix that was factorised last. \pre has_factor()
+    Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
+    //! The same for three right-hand sides in one pass over the factor.
+    Eigen::MatrixX3d solve_three(const Eigen::MatrixX3d& right) const;
     //! Estimate, from below, of the 2-norm condition of the scaled matrix, by power iteration on it
     //! and on its inverse. \pre `factorize` was the last change of the matrix
     //! Infinite when the context was cancelled.
@@ -42,7 +44,7 @@ private:
     void assemble_front(const FactorPlan::Supernode& node, const std::vector<int>& local,
                         Eigen::Ref<Eigen::MatrixXd> front) const;
     //! In place, with the scaled matrix.
-    void solve_scaled(Eigen::MatrixXd& x) const;
+    template <class Columns> void solve_scaled(Columns& x) const;
 
     const FactorPlan* plan_;
     int block_;

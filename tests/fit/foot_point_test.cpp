@@ -12,12 +12,12 @@
 namespace bot2nurbs::test {
 namespace {
 
-SplineSurface fitted(const Target& target)
+SplineSurface fitted(const Target& target, const FitOptions& options = {})
 {
     const auto network = build_spline_network(target.domain.complex, SplineScheme::peters);
     SurfaceSampleSet samples = sample_target(target);
     Context context;
-    auto result = fit_network(*network, samples, {}, context);
+    auto result = fit_network(*network, samples, options, context);
     if (!result)
         throw std::logic_error(result.error().message);
     return std::move(result->surface);
@@ -34,7 +34,12 @@ SplineSurface wavy(const fixtures::Domain& domain, double amplitude)
                   },
                   {},
                   1.0};
-    return fitted(target);
+    // With little fairness the fit follows the edges of the domain, and round an edge that is
+    // narrower than a search's first steps another local minimum may be nearer.
+    FitOptions gentle;
+    gentle.fairness = gentle.fairness_floor = 1e-2;
+    gentle.rows = DistanceRows::point;
+    return fitted(target, gentle);
 }
 
 struct NamedSurface {

@@ -166,8 +166,8 @@ TEST(NormalSystem, an_old_factor_still_leads_to_the_solution)
     }
     const auto solution = system.solve(round.problem, any_condition, Context());
     ASSERT_TRUE(solution.ok);
-    // Conjugate gradients stop at 1e-4 of the step; the moves are of order one.
-    EXPECT_LT(round.distance_to_dense(solution.move), 1e-3);
+    // Conjugate gradients stop at 1e-3 of the step; the moves are of order one.
+    EXPECT_LT(round.distance_to_dense(solution.move), 1e-2);
 }
 
 TEST(NormalSystem, reports_the_condition_within_a_factor_of_two)

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include "fit/fold_guard.h"
+
+#include "analytic_targets.h"
+#include "fit/fold_response.h"
+
+#include <gtest/gtest.h>
+
+namespace bot2nurbs::test {
+namespace {
+
+constexpr Index across = 5, along = 4;
+
+//! A flat grid of patches, its parameters straight.
+struct FlatGrid {
+    fixtures::Domain domain = fixtures::disk_grid(across, along);
+    SplineNetwork network;
+    SplineSurface surface;
+
+    FlatGrid()
+    {
+        Target target{domain, [](const Vec3& p) { return p; }, {}, 1.0};
+        network = std::move(*build_spline_network(domain.complex, SplineScheme::peters));
+        SurfaceSampleSet samples = sample_target(target);
+        Context context;
+        surface = std::move(fit_network(network, samples, {}, context)->surface);
+    }
+};
+
+TEST(FoldGuard, counts_folds_where_they_are)
+{
+    FlatGrid grid;
+    const SurfaceSampleSet samples =
+        sample_target({grid.domain, [](const Vec3& p) { return p; }, {}, 1.0});
+    const FoldGuard guard(grid.domain.complex.quad_count(), samples.normals, samples.domain);
+    ASSERT_TRUE(guard.ready());
+    const Context context;
+    const std::vector<Index> none(grid.domain.complex.quad_count(), 0);
+    EXPECT_EQ(guard.folds(grid.surface, context), none);
+    // The middle coefficient of one patch, pulled over a whole neighbouring piece.
+    SplineSurface folded = grid.surface;
+    folded.bezier()[SplineNetwork::row(7, 6, 6)] =
+        2.0 * grid.surface.bezier(7, 9, 6) - grid.surface.bezier(7, 6, 6);
+    const std::vector<Index> folds = guard.folds(folded, context);
+    EXPECT_GT(folds[7], 0u);
+    EXPECT_EQ(more_folded(none, folds), std::vector<Index>{7});
+    EXPECT_EQ(more_folded(folds, folds), std::vector<Index>{});
+    EXPECT_EQ(more_folded(folds, none), std::vector<Index>{});
+}
+
+TEST(FoldResponse, shortens_moves_in_its_quads_and_nowhere_far_from_them)
+{
+    const FlatGrid grid;
+    const auto reduced = ReducedNetwork::build(grid.network, Context());
+    ASSERT_TRUE(reduced.ok());
+    const FoldResponse response(grid.domain.complex, *reduced);
+    std::vector<Vec3> move(reduced->free_count(), Vec3{0, 0, 1});
+    const std::vector<Vec3> whole = move;
+    response.shorten({0}, 0.0, move);
+    const SplineSurface shortened(grid.network, reduced->expand(move));
+    const SplineSurface full(grid.network, reduced->expand(whole));
+    // Patch 0 stays; a patch that shares no vertex with it moves to the bit as it would have.
+    const std::vector<Index> near = response.with_neighbours({0});
+    const Index far = grid.domain.complex.quad_count() - 1;
+    ASSERT_FALSE(std::binary_search(near.begin(), near.end(), far));
+    for (Index i = 0; i < 13; ++i)
+        for (Index j = 0; j < 13; ++j) {
+            EXPECT_EQ(norm(shortened.bezier(0, i, j)), 0.0);
+            EXPECT_TRUE(shortened.bezier(far, i, j) == full.bezier(far, i, j));
+        }
+    EXPECT_GT(norm(full.bezier(far, 6, 6)), 0.5);
+}
+
+TEST(FoldResponse, neighbours_share_a_vertex)
+{
+    const FlatGrid grid;
+    const auto reduced = ReducedNetwork::build(grid.network, Context());
+    const FoldResponse response(grid.domain.complex, *reduced);
+    for (Index q = 0; q < grid.domain.complex.quad_count(); ++q) {
+        std::vector<Index> expected;
+        for (Index n = 0; n < grid.domain.complex.quad_count(); ++n) {
+            bool shared = false;
+            for (const Index v : grid.domain.complex.quad(q))
+                for (const Index w : grid.domain.complex.quad(n))
+                    shared = shared || v == w;
+            if (shared)
+                expected.push_back(n);
+        }
+        EXPECT_EQ(response.with_neighbours({q}), expected) << q;
+    }
+}
+
+TEST(FoldResponse, lets_the_samples_of_a_quad_slide_less_each_time_it_folds)
+{
+    const FlatGrid grid;
+    const auto reduced = ReducedNetwork::build(grid.network, Context());
+    FoldResponse response(grid.domain.complex, *reduced);
+    double last = 1e-3;
+    for (int time = 0; time < 5; ++time) {
+        response.respond({3}, 1e-3);
+        EXPECT_TRUE(response.least_mu(3) > last || response.least_mu(3) == 1.0);
+        last = response.least_mu(3);
+        EXPECT_EQ(response.least_mu(4), 0.0);
+    }
+    EXPECT_EQ(last, 1.0);
+}
+
+//! The coarse torus with a spike, of twice the radius of the tube, at one place.
+Target spiked_torus(double height)
+{
+    Target target = torus_target(8, 4);
+    const auto torus = target.map;
+    target.map = [torus, height](const Vec3& p) {
+        const Vec3 tip{4.0 * std::cos(0.3), 4.0 * std::sin(0.3), 0.0}, q = torus(p);
+        const Vec3 ring = normalized(Vec3{q.x, q.y, 0.0}) * 3.0;
+        const double d = norm(q - tip) / 0.3;
+        return q + height * std::exp(-d * d) * (q - ring);
+    };
+    return target;
+}
+
+//! Root mean square distance of the samples far from the spike, and rounds.
+std::pair<double, FitSummary> fit_far_from_spike(double height)
+{
+    const Target target = spiked_torus(height);
+    const auto network = build_spline_network(target.domain.complex, SplineScheme::peters);
+    SurfaceSampleSet samples = sample_target(target);
+    Context context;
+    const auto fit = fit_network(*network, samples, {}, context);
+    const Vec3 tip{4.0 * std::cos(0.3), 4.0 * std::sin(0.3), 0.0};
+    double sum = 0.0, count = 0.0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const Vec3& p = samples.positions[i];
+        if (norm(p - tip) < 4.5)
+            continue;
+        const Vec3 off = fit->surface.position(samples.domain[i]) - p;
+        sum += dot(off, off);
+        count += 1.0;
+    }
+    return {std::sqrt(sum / count), fit->summary};
+}
+
+TEST(FitNetwork, one_spot_that_folds_does_not_stop_the_rest)
+{
+    // Patches as large as the spike's surroundings cannot follow it and fold there in every round.
+    // A fit that is stopped by that ends with 18 times the error elsewhere.
+    const auto [plain, plain_summary] = fit_far_from_spike(0.0);
+    const auto [spiked, summary] = fit_far_from_spike(2.0);
+    EXPECT_LT(spiked, 3.0 * plain);
+    EXPECT_GE(summary.rounds.size(), 5u);
+    for (std::size_t r = 1; r < summary.rounds.size(); ++r)
+        EXPECT_LE(summary.rounds[r].rms, summary.rounds[r - 1].rms);
+}
+
+} // namespace
+} // namespace bot2nurbs::test
