@@ -29,6 +29,7 @@ PUBLIC_HEADERS = {
     "repair_mesh": "mesh",
     "closest_point": "mesh",
     "surface_samples": "mesh",
+    "map_level": "maps",
     "quad_complex": "domain",
     "quad_domain": "domain",
     "domain_file": "domain",

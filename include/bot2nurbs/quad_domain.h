@@ -3,6 +3,7 @@
 
 #include "bot2nurbs/context.h"
 #include "bot2nurbs/manifold_mesh.h"
+#include "bot2nurbs/map_level.h"
 #include "bot2nurbs/quad_complex.h"
 #include "bot2nurbs/surface_samples.h"
 
@@ -56,9 +57,6 @@ struct QuadDomain {
     QuadComplex complex;
     std::string origin; //!< "eck", "supplied", ...
 };
-
-//! How the weights of a convex map were chosen: each is tried when the one before folds in doubles.
-enum class MapLevel { harmonic, uniform, exact };
 
 //! The map of one quad's region to the unit square: the overlay of the carrier's faces with the
 //! region, each vertex with its place on the source and its parameters.

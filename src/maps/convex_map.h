@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "bot2nurbs/quad_domain.h"
+#include "bot2nurbs/map_level.h"
 #include "maps/overlay.h"
 
 #include <vector>
