@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "io/mesh_file.h"
 
+#include <charconv>
+
 namespace bot2nurbs {
 
 namespace {
@@ -33,6 +35,13 @@ std::string expected_number(std::string_view found)
 {
     return found.empty() ? "a number is missing"
                          : "expected a number in range, found " + quoted(found);
+}
+
+std::string number_text(double value)
+{
+    char text[40];
+    const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+    return error == std::errc() ? std::string(text, end) : "?";
 }
 
 Result<TriangleSoup> finish_soup(const MeshFile& file, std::vector<Vec3> positions,

@@ -35,6 +35,8 @@ Error error_at_byte(const MeshFile& file, std::size_t byte, const std::string& w
 std::string quoted(std::string_view word);
 //! Says that a number was expected where `found` stands (empty: nothing stands there).
 std::string expected_number(std::string_view found);
+//! A number in the fewest digits that say which double it is.
+std::string number_text(double value);
 
 //! Turns polygons into triangles with provenance and checks what all formats share: there are
 //! faces, and coordinates are finite. Corners must be in range. Faces with fewer than three corners

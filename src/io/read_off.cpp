@@ -1,54 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "io/mesh_file.h"
-#include "io/text_scanner.h"
+#include "io/off_header.h"
 
 namespace bot2nurbs {
-
-namespace {
-
-// Least number of bytes of a vertex ("0 0 0\n") and of a face ("0\n"): bounds what counts can be
-// true in a file of a given size.
-constexpr std::size_t least_vertex_bytes = 6;
-constexpr std::size_t least_face_bytes = 2;
-
-//! True for the OFF keywords with three coordinates: OFF with prefixes ST, C, N in that order.
-bool is_off_keyword(std::string_view word)
-{
-    for (const std::string_view prefix : {"ST", "C", "N"})
-        if (word.substr(0, prefix.size()) == prefix)
-            word.remove_prefix(prefix.size());
-    return word == "OFF";
-}
-
-} // namespace
 
 Result<TriangleSoup> read_off(const MeshFile& file, Context& context)
 {
     TextScanner text(file.bytes, '#');
-    if (text.at_end())
-        return Error{ErrorCode::cannot_read, file.name + ": the file is empty", invalid_index};
-    const char first = *text.position();
-    // The keyword may be missing: then the file starts with its counts.
-    if (first < '0' || first > '9') {
-        const std::string_view keyword = text.word();
-        if (!is_off_keyword(keyword))
-            return error_at_line(file, text.line(),
-                                 "not an OFF file of three-dimensional points: starts with " +
-                                     quoted(keyword));
-        if (!text.at_line_end() && (*text.position() == 'B' || *text.position() == 'b'))
-            return error_at_line(file, text.line(),
-                                 "binary OFF is not supported; save it as text OFF or as PLY");
-    }
-    std::uint64_t vertices = 0, faces = 0, edges = 0;
-    if (!text.number(vertices) || !text.number(faces))
-        return error_at_line(file, text.line(), "counts: " + expected_number(text.bad_word()));
-    if (!text.at_line_end() && !text.number_in_line(edges))
-        return error_at_line(file, text.line(), "counts: " + expected_number(text.bad_word()));
-    if (vertices > text.bytes_left() / least_vertex_bytes + 1 ||
-        faces > text.bytes_left() / least_face_bytes + 1)
-        return error_at_line(file, text.line(),
-                             "the file is too short for the " + std::to_string(vertices) +
-                                 " vertices and " + std::to_string(faces) + " faces it promises");
+    const Result<OffHeader> header = read_off_header(file, text);
+    if (!header)
+        return header.error();
+    const std::uint64_t vertices = header->vertices, faces = header->faces;
 
     std::vector<Vec3> positions(vertices);
     for (std::size_t v = 0; v < vertices; ++v) {

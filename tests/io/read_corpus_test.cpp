@@ -4,10 +4,12 @@
 // were computed by other programs. Skipped where the corpus is absent.
 #include "bot2nurbs/check_mesh.h"
 #include "bot2nurbs/read_mesh.h"
+#include "bot2nurbs/read_points.h"
 #include "bot2nurbs/repair_mesh.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -43,13 +45,13 @@ struct IndexRow {
     }
 };
 
-//! The rows of the index whose file lies in one of the folders of data/meshes.
-std::vector<IndexRow> index_rows(const std::vector<std::string>& folders)
+//! The rows of the index whose file starts with `prefix`.
+std::vector<IndexRow> rows_of(const std::string& prefix)
 {
     std::vector<IndexRow> rows;
     std::ifstream index(data_folder + "INDEX.md");
     for (std::string line; std::getline(index, line);) {
-        if (line.rfind("| meshes/", 0) != 0)
+        if (line.rfind("| " + prefix, 0) != 0)
             continue;
         IndexRow row;
         std::istringstream cells(line.substr(1));
@@ -59,10 +61,19 @@ std::vector<IndexRow> index_rows(const std::vector<std::string>& folders)
             row.cells.push_back(a == std::string::npos ? "" : cell.substr(a, b - a + 1));
         }
         row.file = row.cells[0];
-        for (const std::string& folder : folders)
-            if (row.file.rfind("meshes/" + folder + "/", 0) == 0 && row.cells.size() > 12)
-                rows.push_back(row);
+        rows.push_back(row);
     }
+    return rows;
+}
+
+//! The rows whose file lies in one of the folders of data/meshes.
+std::vector<IndexRow> index_rows(const std::vector<std::string>& folders)
+{
+    std::vector<IndexRow> rows;
+    for (const std::string& folder : folders)
+        for (const IndexRow& row : rows_of("meshes/" + folder + "/"))
+            if (row.cells.size() > 12)
+                rows.push_back(row);
     return rows;
 }
 
@@ -173,4 +184,28 @@ TEST(ReadCorpus, crossings_of_broken_files_agree_with_the_index)
         ++compared;
     }
     EXPECT_GT(compared, 80);
+}
+
+TEST(ReadCorpus, clouds_have_the_points_and_normals_of_the_index)
+{
+    const std::vector<IndexRow> rows = rows_of("clouds/");
+    if (rows.empty())
+        GTEST_SKIP() << "no corpus at " << data_folder;
+    ASSERT_EQ(rows.size(), 98u);
+    for (const IndexRow& row : rows) {
+        SCOPED_TRACE(row.file);
+        Context context;
+        const Result<FileContent> content = file_content(data_folder + row.file, context);
+        ASSERT_TRUE(content);
+        EXPECT_EQ(*content, FileContent::points);
+        const Result<PointCloud> cloud = read_points(data_folder + row.file, context);
+        ASSERT_TRUE(cloud) << cloud.error().message;
+        EXPECT_EQ(std::to_string(cloud->size()), row.cells[3]);
+        if (fs::path(row.file).extension() == ".obj")
+            continue; // the index was made without looking at vn lines
+        // Nor does it count normals that are all zero.
+        const bool any = std::any_of(cloud->normals.begin(), cloud->normals.end(),
+                                     [](const Vec3& n) { return n != Vec3{}; });
+        EXPECT_EQ(any ? "yes" : "no", row.cells[4]);
+    }
 }

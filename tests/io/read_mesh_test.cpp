@@ -2,6 +2,7 @@
 #include "bot2nurbs/read_mesh.h"
 
 #include "mesh_fixtures.h"
+#include "scratch_file.h"
 
 #include <gtest/gtest.h>
 
@@ -12,25 +13,9 @@
 #include <random>
 
 using namespace bot2nurbs;
+using bot2nurbs::test::ScratchFile;
 
 namespace {
-
-//! A file in the folder for temporary files, removed at the end.
-class ScratchFile {
-public:
-    ScratchFile(const std::string& name, const std::string& bytes)
-        : path_(testing::TempDir() + "bot2nurbs_read_" + name)
-    {
-        std::ofstream(path_, std::ios::binary) << bytes;
-    }
-    ~ScratchFile() { std::remove(path_.c_str()); }
-    ScratchFile(const ScratchFile&) = delete;
-    ScratchFile& operator=(const ScratchFile&) = delete;
-    const std::string& path() const { return path_; }
-
-private:
-    std::string path_;
-};
 
 Result<TriangleSoup> read(const std::string& name, const std::string& bytes)
 {
