@@ -14,9 +14,9 @@ enum class PcdData { text, binary, compressed };
 
 struct PcdField {
     std::string name;
-    std::size_t size = 4;  //!< Bytes of a value: 1, 2, 4 or 8.
-    char type = 'F';       //!< 'F' real (4 or 8 bytes), 'I' signed, 'U' unsigned.
-    std::size_t count = 1; //!< Values a point.
+    std::size_t size = 4;   //!< Bytes of a value: 1, 2, 4 or 8.
+    char type = 'F';        //!< 'F' real (4 or 8 bytes), 'I' signed, 'U' unsigned.
+    std::size_t count = 1;  //!< Values a point.
     std::size_t offset = 0; //!< Of the field in the record of a point, in bytes.
 };
 

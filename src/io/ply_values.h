@@ -106,9 +106,9 @@ private:
 };
 
 //! Reads the length of a list. `fail(what)` makes the error.
-template <class Values, class Fail>
-Status read_ply_count(Values& values, const PlyProperty& property, std::uint64_t& entries,
-                      const Fail& fail)
+template <class Values, class Fail> Status read_ply_count(Values& values,
+                                                          const PlyProperty& property,
+                                                          std::uint64_t& entries, const Fail& fail)
 {
     double count = 0.0;
     if (!values.read(property.count, count))

@@ -28,8 +28,7 @@ bool are_normals(const NumberRows& rows, std::size_t at)
 {
     std::size_t good = 0;
     for (std::size_t r = 0; r < rows.size(); ++r) {
-        const double length =
-            std::hypot(rows.at(r, at), rows.at(r, at + 1), rows.at(r, at + 2));
+        const double length = std::hypot(rows.at(r, at), rows.at(r, at + 1), rows.at(r, at + 2));
         good += length == 0.0 || std::abs(length - 1.0) <= unit_slack;
     }
     return static_cast<double>(good) >= unit_share * static_cast<double>(rows.size());

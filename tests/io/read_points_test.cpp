@@ -55,8 +55,8 @@ template <class T> void put(std::string& bytes, T value, bool big_endian = false
 }
 
 // The cloud that every format below stores: four points, unit normals, colours.
-const std::vector<Vec3> positions{{0.5, -1.25, 2.0}, {1e-3, 3.0, -4.5}, {100.0, 0.0, 0.25},
-                                  {-7.0, 8.5, 9.0}};
+const std::vector<Vec3> positions{
+    {0.5, -1.25, 2.0}, {1e-3, 3.0, -4.5}, {100.0, 0.0, 0.25}, {-7.0, 8.5, 9.0}};
 const std::vector<Vec3> normals{{0, 0, 1}, {0.6, 0.8, 0}, {-1, 0, 0}, {0, -0.6, 0.8}};
 const std::vector<std::array<std::uint8_t, 3>> colors{
     {0, 10, 255}, {1, 2, 3}, {200, 100, 50}, {255, 255, 255}};
@@ -293,10 +293,11 @@ TEST(ReadPoints, real_colours_are_of_zero_to_one)
 
 TEST(ReadPoints, faces_of_a_mesh_file_are_passed_over)
 {
-    const PointCloud cloud = must_read(
-        "mesh.ply", "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\n"
-                    "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                    "end_header\n3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n");
+    const PointCloud cloud =
+        must_read("mesh.ply",
+                  "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\n"
+                  "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                  "end_header\n3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n");
     EXPECT_EQ(cloud.positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
     EXPECT_EQ(must_read("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").size(), 3u);
     EXPECT_EQ(must_read("mesh.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").size(), 3u);
@@ -437,8 +438,8 @@ TEST(ReadPoints, files_cut_anywhere_give_an_error_or_fewer_points_but_never_othe
             // Only text without a promised count can end early; its last number may be cut too.
             ASSERT_LE(cloud->size(), positions.size()) << sample.name << " cut at " << length;
             for (std::size_t i = 0; i + 1 < cloud->size(); ++i)
-                ASSERT_EQ(cloud->positions[i], sample.name == "a.las" ? cloud->positions[i]
-                                                                      : positions[i])
+                ASSERT_EQ(cloud->positions[i],
+                          sample.name == "a.las" ? cloud->positions[i] : positions[i])
                     << sample.name << " cut at " << length;
         }
 }
