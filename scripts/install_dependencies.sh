@@ -12,7 +12,7 @@ cd "$(dirname "$0")/.."
 
 packages=(
     build-essential cmake ninja-build ccache clang-format-14 python3
-    libeigen3-dev liblemon-dev libtbb-dev nlohmann-json3-dev libcli11-dev libfmt-dev
+    libeigen3-dev libnanoflann-dev liblemon-dev libtbb-dev nlohmann-json3-dev libcli11-dev libfmt-dev
     libocct-foundation-dev libocct-modeling-data-dev libocct-modeling-algorithms-dev
     libocct-data-exchange-dev libboost-dev libgtest-dev pkg-config)
 for argument in "$@"; do
