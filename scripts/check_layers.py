@@ -34,6 +34,7 @@ PUBLIC_HEADERS = {
     "estimate_normals": "cloud",
     "find_normals": "cloud",
     "orient_normals": "cloud",
+    "reconstruct_surface": "cloud",
     "map_level": "maps",
     "quad_complex": "domain",
     "quad_domain": "domain",

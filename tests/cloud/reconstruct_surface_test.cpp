@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+#include "bot2nurbs/orient_normals.h"
+#include "bot2nurbs/reconstruct_surface.h"
+#include "cloud_fixtures.h"
+
+#include <functional>
+#include <gtest/gtest.h>
+
+namespace bot2nurbs {
+namespace {
+
+using fixtures::SampledSurface;
+
+struct Case {
+    Reconstruction result;
+    ManifoldMesh mesh;
+    double noise = 0.0;
+};
+
+Case reconstructed(const std::vector<Vec3>& points, const ReconstructOptions& options = {},
+                   unsigned threads = 0, const std::vector<Vec3>& normals = {})
+{
+    Context context;
+    context.threads = threads;
+    auto estimate = estimate_normals(points, context);
+    EXPECT_TRUE(estimate);
+    auto oriented = orient_normals(points, *estimate, {}, context);
+    EXPECT_TRUE(oriented);
+    if (!normals.empty())
+        estimate->normals = normals;
+    auto result =
+        reconstruct_surface(points, *estimate, oriented->disagreement, options, context);
+    EXPECT_TRUE(result) << result.error().message;
+    Case c;
+    c.result = std::move(result.value());
+    c.noise = estimate->noise;
+    auto mesh = ManifoldMesh::build(c.result.mesh.positions, c.result.mesh.triangles);
+    EXPECT_TRUE(mesh) << mesh.error().message;
+    c.mesh = std::move(mesh.value());
+    return c;
+}
+
+double rms(const ManifoldMesh& mesh, const std::function<double(const Vec3&)>& distance)
+{
+    double sum = 0.0;
+    for (const Vec3& p : mesh.positions())
+        sum += distance(p) * distance(p);
+    return std::sqrt(sum / mesh.vertex_count());
+}
+
+double from_torus(const Vec3& p)
+{
+    return std::hypot(std::hypot(p.x, p.y) - 1.0, p.z) - 0.4;
+}
+
+TEST(ReconstructSurface, a_sphere_comes_back_closed_at_any_scale_and_place)
+{
+    for (const double scale : {1e-6, 1.0, 1e6}) {
+        const Vec3 centre = scale * Vec3{3.0, -2.0, 1.0};
+        const auto s = fixtures::sphere_points(4000, scale, centre);
+        const Case c = reconstructed(s.points);
+        EXPECT_EQ(c.result.topology, CloudTopology::closed);
+        EXPECT_TRUE(c.result.evidence.doubts.empty());
+        EXPECT_TRUE(c.mesh.closed());
+        EXPECT_EQ(c.mesh.genus(), 0);
+        EXPECT_GT(c.mesh.volume(), 0.0);
+        EXPECT_LT(rms(c.mesh, [&](const Vec3& p) { return norm(p - centre) - scale; }),
+                  0.002 * scale);
+    }
+}
+
+TEST(ReconstructSurface, a_torus_has_genus_one_and_lies_where_the_points_are)
+{
+    const auto s = fixtures::torus_points(8000);
+    const Case c = reconstructed(s.points);
+    EXPECT_EQ(c.result.topology, CloudTopology::closed);
+    EXPECT_EQ(c.mesh.genus(), 1);
+    EXPECT_EQ(c.result.evidence.genus, 1);
+    EXPECT_EQ(c.result.evidence.finer_genus, 1);
+    EXPECT_LT(rms(c.mesh, from_torus), 0.003);
+}
+
+TEST(ReconstructSurface, noise_is_smoothed)
+{
+    const double noise = 0.02;
+    const auto s = fixtures::torus_points(20000);
+    const Case c = reconstructed(fixtures::with_noise(s.points, noise));
+    EXPECT_EQ(c.result.topology, CloudTopology::closed);
+    EXPECT_EQ(c.mesh.genus(), 1);
+    EXPECT_LT(rms(c.mesh, from_torus), 0.5 * noise);
+}
+
+TEST(ReconstructSurface, half_a_sphere_is_open_with_one_loop_near_its_rim)
+{
+    SampledSurface s = fixtures::sphere_points(8000);
+    std::vector<Vec3> half;
+    for (const Vec3& p : s.points)
+        if (p.z > 0.0)
+            half.push_back(p);
+    const Case c = reconstructed(half);
+    EXPECT_EQ(c.result.topology, CloudTopology::open);
+    ASSERT_EQ(c.result.evidence.holes.size(), 1u);
+    EXPECT_FALSE(c.result.evidence.holes[0].filled);
+    EXPECT_EQ(c.result.evidence.genus, 0);
+    EXPECT_FALSE(c.mesh.closed());
+    const double spacing = std::sqrt(4.0 * fixtures::pi / 8000.0);
+    for (const Vec3& p : c.mesh.positions())
+        EXPECT_GT(p.z, -2.5 * spacing);
+}
+
+TEST(ReconstructSurface, a_hole_within_the_size_allowed_is_filled_and_said_so)
+{
+    SampledSurface s = fixtures::sphere_points(8000);
+    std::vector<Vec3> pierced;
+    for (const Vec3& p : s.points)
+        if (p.z < 0.97) // a cap 0.5 across, of a diagonal of 3.5
+            pierced.push_back(p);
+    ReconstructOptions options;
+    options.fill_holes = 0.2;
+    const Case filled = reconstructed(pierced, options);
+    EXPECT_EQ(filled.result.topology, CloudTopology::holes_filled);
+    ASSERT_EQ(filled.result.evidence.holes.size(), 1u);
+    EXPECT_TRUE(filled.result.evidence.holes[0].filled);
+    EXPECT_NEAR(filled.result.evidence.holes[0].size, 0.5, 0.1);
+    EXPECT_GT(filled.result.evidence.holes[0].place.z, 0.9);
+    EXPECT_TRUE(filled.mesh.closed());
+    options.fill_holes = 0.0;
+    const Case open = reconstructed(pierced, options);
+    EXPECT_EQ(open.result.topology, CloudTopology::open);
+    EXPECT_FALSE(open.mesh.closed());
+}
+
+TEST(ReconstructSurface, a_flat_sheet_of_points_is_open)
+{
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    std::vector<Vec3> points;
+    for (int i = 0; i < 3000; ++i)
+        points.push_back({uniform(random), uniform(random), 0.0});
+    const Case c = reconstructed(points);
+    EXPECT_NE(c.result.topology, CloudTopology::closed);
+    EXPECT_NE(c.result.topology, CloudTopology::holes_filled);
+    EXPECT_FALSE(c.mesh.closed());
+}
+
+TEST(ReconstructSurface, points_that_fill_space_are_uncertain)
+{
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    std::vector<Vec3> points;
+    for (int i = 0; i < 4000; ++i)
+        points.push_back({uniform(random), uniform(random), uniform(random)});
+    const Case c = reconstructed(points);
+    EXPECT_EQ(c.result.topology, CloudTopology::uncertain);
+    EXPECT_FALSE(c.result.evidence.doubts.empty());
+}
+
+TEST(ReconstructSurface, a_cluster_of_a_few_points_far_away_makes_no_component)
+{
+    SampledSurface s = fixtures::sphere_points(4000);
+    const auto speck = fixtures::sphere_points(20, 0.03, {1.6, 0.0, 0.0});
+    s = fixtures::joined(s, speck);
+    const Case c = reconstructed(s.points);
+    EXPECT_EQ(c.result.evidence.components, 1u);
+    for (const Vec3& p : c.mesh.positions())
+        EXPECT_LT(norm(p), 1.2);
+}
+
+TEST(ReconstructSurface, inward_normals_give_the_same_surface_facing_inward)
+{
+    auto s = fixtures::sphere_points(3000);
+    for (Vec3& n : s.normals)
+        n = -n;
+    const Case c = reconstructed(s.points, {}, 0, s.normals);
+    EXPECT_TRUE(c.mesh.closed());
+    EXPECT_NEAR(c.mesh.volume(), -4.0 / 3.0 * fixtures::pi, 0.05);
+}
+
+TEST(ReconstructSurface, the_mesh_stays_near_the_size_asked_for)
+{
+    const auto s = fixtures::sphere_points(40000);
+    ReconstructOptions options;
+    options.most_vertices = 4000;
+    const Case c = reconstructed(s.points, options);
+    EXPECT_LT(c.mesh.vertex_count(), 4.0 * 4000);
+    EXPECT_GT(c.mesh.vertex_count(), 4000 / 4.0);
+}
+
+TEST(ReconstructSurface, the_same_for_any_thread_count)
+{
+    const auto s = fixtures::torus_points(3000);
+    const Case one = reconstructed(s.points, {}, 1), three = reconstructed(s.points, {}, 3);
+    EXPECT_EQ(one.mesh.positions(), three.mesh.positions());
+    EXPECT_EQ(one.mesh.triangles(), three.mesh.triangles());
+}
+
+TEST(ReconstructSurface, options_out_of_range_are_refused)
+{
+    ReconstructOptions options;
+    options.depth = 2;
+    EXPECT_TRUE(options.check());
+    options = {};
+    options.fill_holes = -0.1;
+    EXPECT_TRUE(options.check());
+    options = {};
+    options.most_vertices = 0;
+    EXPECT_TRUE(options.check());
+}
+
+} // namespace
+} // namespace bot2nurbs
