@@ -5,12 +5,16 @@
 #include "layout/base_complex.h"
 #include "layout/improve.h"
 #include "layout/pair_triangles.h"
+#include "layout/place_sites.h"
+#include "layout/proxy.h"
 #include "layout/refine_carrier.h"
 #include "layout/size_field.h"
 #include "layout/split_in_quads.h"
+#include "layout/uncut.h"
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace bot2nurbs {
 
@@ -30,6 +34,10 @@ constexpr double surplus = 1.2;
 // Carrier edges are at most this part of the width of a patch, so that a patch has enough faces for
 // a smooth map: about forty.
 constexpr double carrier_resolution = 0.3;
+// Edges of a coarse mesh that stands for the carrier are this part of a patch's width; it is made
+// where it has so many times fewer faces.
+constexpr double proxy_resolution = 0.2;
+constexpr double proxy_saving = 2.5;
 // Rounds of Lloyd's relaxation; more move sites by less than a mesh edge.
 constexpr int relaxation_rounds = 8;
 // Refining a carrier adds at most this many vertices per face, plus the constant: a sliver whose
@@ -57,43 +65,154 @@ double scaled_area(const ManifoldMesh& mesh, const std::vector<double>& density)
     return area;
 }
 
-Index default_patches(double bending, int genus)
+// `handles` is the genus of a closed surface.
+Index default_patches(double bending, double handles)
 {
-    double limit = genus >= 3 ? max_default_patches_genus_3 : max_default_patches;
-    limit = std::max(limit, patches_per_handle * genus);
-    const double least = std::max(min_default_patches, 0.5 * patches_per_handle * genus);
+    double limit = handles >= 3.0 ? max_default_patches_genus_3 : max_default_patches;
+    limit = std::max(limit, patches_per_handle * handles);
+    const double least = std::max(min_default_patches, 0.5 * patches_per_handle * handles);
     return static_cast<Index>(std::lround(std::clamp(bending, least, limit)));
 }
 
-// Voronoi sites: enough for the patches wanted, evenly spread, then whatever the conditions ask.
-void place_sites(Tiles& tiles, Index count, LayoutSummary& summary, const Context& context)
+int euler_characteristic(const ManifoldMesh& mesh)
 {
-    // The first site is the vertex farthest from the middle: it does not depend on numbering.
-    const ManifoldMesh& mesh = tiles.mesh();
-    const Vec3 center = mesh.box().center();
-    Index first = 0;
-    for (Index v = 1; v < mesh.vertex_count(); ++v)
-        if (norm_squared(mesh.position(v) - center) > norm_squared(mesh.position(first) - center))
-            first = v;
-    tiles.grow({first});
-    tiles.add_farthest(std::min(count, mesh.vertex_count()));
-    for (int round = 0; round < relaxation_rounds && !context.cancelled(); ++round)
-        tiles.relax();
-    const std::size_t before = tiles.sites().size();
-    while (!context.cancelled()) {
-        const std::vector<Index> missing = tiles.violations();
-        if (missing.empty())
-            break;
-        tiles.add(missing);
-    }
-    summary.sites = static_cast<Index>(tiles.sites().size());
-    summary.sites_added = static_cast<Index>(tiles.sites().size() - before);
+    return static_cast<int>(mesh.vertex_count()) - static_cast<int>(mesh.edge_count()) +
+           static_cast<int>(mesh.face_count());
 }
 
-Result<QuadDomain> make_domain(const PatchComplex& complex, CarrierMesh carrier)
+// Marks of the carrier's edges, and its vertices at which a crease or the boundary turns.
+struct Features {
+    std::vector<char> marks;  // Per halfedge.
+    std::vector<char> corner; // Per vertex.
+
+    Features(const ManifoldMesh& mesh, const std::vector<FeaturePath>& paths)
+        : corner(mesh.vertex_count(), 0)
+    {
+        std::vector<FeaturePath> edges;
+        for (const FeaturePath& path : paths) {
+            if (path.kind != FeatureKind::corner)
+                edges.push_back(path);
+            else
+                for (const Index v : path.vertices)
+                    corner[v] = 1;
+        }
+        marks = mark_edges(mesh, edges);
+    }
+    // Vertices that came with a refinement are no corners.
+    void fit_to(const ManifoldMesh& carrier) { corner.resize(carrier.vertex_count(), 0); }
+};
+
+// The carrier and the level of the whole mesh.
+struct Ground {
+    CarrierMesh carrier;
+    Features features;
+    std::unique_ptr<CutMesh> cut;
+    std::unique_ptr<LayoutLevel> level;
+    double width = 0.0; // Of a patch, in the metric of the density.
+};
+
+std::vector<double> density_by_name(const CutMesh& cut, const std::vector<double>& density,
+                                    Index names)
+{
+    std::vector<double> result(names, 0.0);
+    for (Index v = 0; v < density.size(); ++v)
+        result[cut.original(v)] = std::max(result[cut.original(v)], density[v]);
+    return result;
+}
+
+Ground prepare(const ManifoldMesh& source, const LayoutOptions& options, LayoutSummary& summary)
+{
+    Features features(source, options.features);
+    const double smoothing = curvature_scale * source.box().diagonal();
+    SizeField field;
+    {
+        const CutMesh cut(source, features.marks);
+        field = measure_size_field(cut.mesh(), smoothing);
+        field.density = density_by_name(cut, field.density, source.vertex_count());
+    }
+    const double handles = 0.5 * (2 - euler_characteristic(source));
+    summary.target_patches =
+        options.patches ? *options.patches : default_patches(field.bending, handles);
+    const double count = static_cast<double>(summary.target_patches);
+    std::vector<double> limit(source.vertex_count());
+    const double width = std::sqrt(surface_area(source) / count);
+    for (Index v = 0; v < source.vertex_count(); ++v)
+        limit[v] = carrier_resolution * width / field.density[v];
+    CarrierMesh carrier = refine_carrier(
+        source, limit, max_refinement_floor + max_refinement_factor * source.face_count(),
+        features.marks);
+    features.fit_to(carrier.mesh);
+    if (carrier.refined)
+        summary.notes.push_back("edges split where the mesh is coarse for its patches: " +
+                                std::to_string(source.face_count()) + " faces became " +
+                                std::to_string(carrier.mesh.face_count()));
+
+    Ground ground{std::move(carrier), std::move(features), nullptr, nullptr, 0.0};
+    const ManifoldMesh& mesh = ground.carrier.mesh;
+    ground.cut = std::make_unique<CutMesh>(mesh, ground.features.marks);
+    const ManifoldMesh& cut = ground.cut->mesh();
+    std::vector<double> density = measure_size_field(cut, smoothing).density;
+    ground.width = std::sqrt(scaled_area(cut, density) / count);
+    std::vector<Index> name(cut.vertex_count());
+    for (Index v = 0; v < cut.vertex_count(); ++v)
+        name[v] = ground.cut->original(v);
+    ground.level = std::make_unique<LayoutLevel>(
+        cut, std::move(name), mesh.vertex_count(), std::move(density),
+        trace_curves(mesh, ground.features.marks, ground.features.corner));
+    return ground;
+}
+
+// How many sites to place inside so that about `patches` quads come out.
+Index inner_sites(const LayoutLevel& level, double width, double patches)
+{
+    // On a surface with f quads and b boundary edges, v = f + b / 2 + Euler characteristic; over
+    // all regions of the level. Pieces of curves are about as long as patches are wide.
+    double border = 0.0;
+    for (const Curve& c : level.curves()) {
+        const std::vector<Vec3> p = level.points(c);
+        double length = 0.0;
+        for (std::size_t i = 1; i < p.size(); ++i)
+            length += norm(p[i] - p[i - 1]);
+        border += std::max(1.0, length / width);
+    }
+    return static_cast<Index>(std::max(0.0, patches + euler_characteristic(level.mesh()) - border));
+}
+
+SizeMetric metric_of(const LayoutLevel& level, double width)
+{
+    return {level.density(), width * width};
+}
+
+// K_tri on a level.
+Result<PatchComplex> make_triangles(const LayoutLevel& level, double width, Index target,
+                                    LayoutSummary& summary, Context& context)
+{
+    SitePlan plan;
+    plan.width = width / std::sqrt(surplus);
+    plan.inner = inner_sites(level, plan.width, surplus * static_cast<double>(target));
+    plan.relaxations = relaxation_rounds;
+    plan.even_regions = true;
+    Tiles tiles(level.mesh(), level.density());
+    summary.sites_added = place_sites(level, plan, tiles, context);
+    summary.sites = static_cast<Index>(tiles.sites().size());
+    if (context.cancelled())
+        return Context::cancelled_error("layout");
+    Result<PatchComplex> complex = build_base_complex(tiles, context);
+    if (!complex)
+        return complex;
+    straighten_triangles(*complex, context);
+    improve_triangles(*complex, metric_of(level, width), context);
+    if (context.cancelled())
+        return Context::cancelled_error("layout");
+    return complex;
+}
+
+Result<QuadDomain> make_domain(const PatchComplex& complex, CarrierMesh carrier,
+                               const std::vector<char>& is_corner)
 {
     QuadDomain domain;
-    std::vector<Index> number(carrier.mesh.vertex_count(), invalid_index);
+    const ManifoldMesh& mesh = carrier.mesh;
+    std::vector<Index> number(mesh.vertex_count(), invalid_index);
     std::vector<std::array<Index, 4>> quads;
     for (Index f = 0; f < complex.faces().size(); ++f) {
         const std::vector<Index> corners = complex.corners(f);
@@ -107,8 +226,17 @@ Result<QuadDomain> make_domain(const PatchComplex& complex, CarrierMesh carrier)
         }
         quads.push_back(quad);
     }
-    Result<QuadComplex> built =
-        QuadComplex::build(static_cast<Index>(domain.vertices.size()), std::move(quads));
+    std::vector<std::pair<Index, Index>> creases;
+    for (Index p = 0; p < complex.paths().size(); ++p)
+        if (complex.paths()[p].mark == mark_of(FeatureKind::crease) && !complex.is_boundary(p))
+            creases.emplace_back(number[complex.paths()[p].geometry.a],
+                                 number[complex.paths()[p].geometry.b]);
+    std::vector<Index> corners;
+    for (Index v = 0; v < domain.vertices.size(); ++v)
+        if (domain.vertices[v] < is_corner.size() && is_corner[domain.vertices[v]])
+            corners.push_back(v);
+    Result<QuadComplex> built = QuadComplex::build(static_cast<Index>(domain.vertices.size()),
+                                                   std::move(quads), creases, std::move(corners));
     if (!built)
         return built.error();
     domain.complex = std::move(*built);
@@ -124,10 +252,11 @@ Result<QuadDomain> make_domain(const PatchComplex& complex, CarrierMesh carrier)
             path.a = walk.start();
             path.b = walk.end();
             for (std::size_t i = 0; i < walk.node_count(); ++i)
-                path.nodes.push_back(walk.node(carrier.mesh, i));
+                path.nodes.push_back(walk.node(mesh, i));
             domain.edges[e].a = number[path.a];
             domain.edges[e].b = number[path.b];
-            domain.edges[e].path = path_points(carrier.mesh, path);
+            domain.edges[e].path = path_points(mesh, path);
+            domain.edges[e].crease = domain.complex.is_crease(e);
         }
     domain.carrier = std::move(carrier);
     domain.origin = "eck";
@@ -139,78 +268,83 @@ Result<QuadDomain> make_domain(const PatchComplex& complex, CarrierMesh carrier)
 Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOptions& options,
                                   Context& context)
 {
-    if (!source.closed())
-        return Error{ErrorCode::open_mesh, "the automatic layout needs a closed mesh",
-                     invalid_index};
     if (options.patches && *options.patches == 0)
         return Error{ErrorCode::bad_option, "the number of patches must be positive",
                      invalid_index};
     LayoutResult result;
     LayoutSummary& summary = result.summary;
-    const int genus = source.genus();
-    SizeField field = measure_size_field(source, curvature_scale * source.box().diagonal());
-    summary.target_patches =
-        options.patches ? *options.patches : default_patches(field.bending, genus);
+    Ground ground = prepare(source, options, summary);
+    if (context.cancelled())
+        return Context::cancelled_error("layout");
 
-    const double width =
-        std::sqrt(surface_area(source) / static_cast<double>(summary.target_patches));
-    std::vector<double> limit(source.vertex_count());
-    for (Index v = 0; v < source.vertex_count(); ++v)
-        limit[v] = carrier_resolution * width / field.density[v];
-    CarrierMesh carrier = refine_carrier(
-        source, limit, max_refinement_floor + max_refinement_factor * source.face_count());
-    if (carrier.refined) {
-        summary.notes.push_back("edges split where the mesh is coarse for its patches: " +
-                                std::to_string(source.face_count()) + " faces became " +
-                                std::to_string(carrier.mesh.face_count()));
-        field = measure_size_field(carrier.mesh, curvature_scale * source.box().diagonal());
+    // A fine mesh is stood for by a coarse one.
+    std::optional<Proxy> proxy;
+    const double cells = static_cast<double>(summary.target_patches) * 4.0 /
+                         (1.732 * proxy_resolution * proxy_resolution);
+    if (static_cast<double>(ground.carrier.mesh.face_count()) > proxy_saving * cells) {
+        Result<Proxy> built = Proxy::build(*ground.level, proxy_resolution * ground.width, context);
+        if (!built && built.error().code == ErrorCode::cancelled)
+            return built.error();
+        if (built)
+            proxy = std::move(*built);
+        else
+            summary.notes.push_back("laid out on the whole mesh: " + built.error().message);
     }
-    if (context.cancelled())
-        return Context::cancelled_error("layout");
-
-    // V - E + F of quads on a surface of genus g: patches = vertices - (2 - 2 g).
-    const double vertices =
-        surplus * static_cast<double>(summary.target_patches) + 2.0 - 2.0 * genus;
-    Tiles tiles(carrier.mesh, field.density);
-    place_sites(tiles, static_cast<Index>(std::max(vertices, 4.0)), summary, context);
-    if (context.cancelled())
-        return Context::cancelled_error("layout");
-
-    Result<PatchComplex> complex = build_base_complex(tiles, context);
+    const LayoutLevel& level = proxy ? proxy->level() : *ground.level;
+    Result<PatchComplex> complex =
+        make_triangles(level, ground.width, summary.target_patches, summary, context);
     if (!complex)
         return complex.error();
-    straighten_triangles(*complex, context);
-    const auto metric = [&](const CarrierMesh& on) {
-        return SizeMetric{field.density, scaled_area(on.mesh, field.density) /
-                                             static_cast<double>(summary.target_patches)};
-    };
-    improve_triangles(*complex, metric(carrier), context);
-    const auto finish = [&](PatchComplex& quads, CarrierMesh& on) -> Result<LayoutResult> {
-        // Vertices that came with a split have no density of their own yet.
-        if (on.mesh.vertex_count() != field.density.size())
-            field = measure_size_field(on.mesh, curvature_scale * source.box().diagonal());
-        improve_quads(quads, summary.target_patches, metric(on), context);
-        if (context.cancelled())
-            return Context::cancelled_error("layout");
-        Result<QuadDomain> domain = make_domain(quads, std::move(on));
-        if (!domain)
-            return domain.error();
-        result.domain = std::move(*domain);
-        return std::move(result);
+    const auto on_carrier = [&](const PatchComplex& made) -> Result<PatchComplex> {
+        if (!proxy)
+            return uncut(made, *ground.cut, ground.carrier.mesh, ground.features.marks);
+        Result<PatchComplex> lifted = proxy->lift(made, context);
+        if (!lifted)
+            return lifted;
+        return uncut(*lifted, *ground.cut, ground.carrier.mesh, ground.features.marks);
     };
     if (!options.split_triangles) {
-        const Result<bool> paired = pair_triangles(*complex, context);
+        PatchComplex quads = *complex;
+        const Result<bool> paired = pair_triangles(quads, context);
         if (!paired)
             return paired.error();
-        if (*paired)
-            return finish(*complex, carrier);
+        if (*paired) {
+            improve_quads(quads, summary.target_patches, metric_of(level, ground.width), context);
+            if (context.cancelled())
+                return Context::cancelled_error("layout");
+            const Result<PatchComplex> lifted = on_carrier(quads);
+            if (!lifted)
+                return lifted.error();
+            Result<QuadDomain> domain =
+                make_domain(*lifted, std::move(ground.carrier), ground.features.corner);
+            if (!domain)
+                return domain.error();
+            result.domain = std::move(*domain);
+            return result;
+        }
     }
     summary.subdivided = true;
     summary.notes.push_back("triangles split in three quads each");
-    Result<SplitComplex> split = split_in_quads(*complex, source, carrier, context);
+    Result<PatchComplex> triangles = on_carrier(*complex);
+    if (!triangles)
+        return triangles.error();
+    Result<SplitComplex> split = split_in_quads(*triangles, source, ground.carrier, context);
     if (!split)
         return split.error();
-    return finish(split->complex, *split->carrier);
+    const std::vector<double> density =
+        measure_size_field(split->carrier->mesh, curvature_scale * source.box().diagonal()).density;
+    improve_quads(split->complex, summary.target_patches,
+                  {density, scaled_area(split->carrier->mesh, density) /
+                                static_cast<double>(summary.target_patches)},
+                  context);
+    if (context.cancelled())
+        return Context::cancelled_error("layout");
+    Result<QuadDomain> domain =
+        make_domain(split->complex, std::move(*split->carrier), ground.features.corner);
+    if (!domain)
+        return domain.error();
+    result.domain = std::move(*domain);
+    return result;
 }
 
 } // namespace bot2nurbs

@@ -35,9 +35,11 @@ Result<bool> pair_triangles(PatchComplex& complex, Context& context)
         for_each_chunk(context, distortion.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p) {
                 const PatchComplex::Path& path = complex.paths()[p];
+                if (!path.alive || complex.is_boundary(static_cast<Index>(p)))
+                    continue;
                 const auto border = complex.border({path.left, path.right});
                 if (border && border->size() == 4)
-                    distortion[p] = face_distortion(complex, *border, builders.local());
+                    distortion[p] = face_distortion(complex.geometry(*border), builders.local());
             }
         });
     if (!finished)
@@ -67,8 +69,7 @@ Result<bool> pair_triangles(PatchComplex& complex, Context& context)
     for (const Index c : *chosen) {
         const PatchComplex::Path& path = complex.paths()[path_of[c]];
         const std::vector<Index> faces{path.left, path.right};
-        if (!complex.replace(faces, *complex.border(faces), {}))
-            return Error{ErrorCode::internal, "a pair of faces could not be joined", path_of[c]};
+        complex.apply({faces, *complex.border(faces), {}, {}});
     }
     complex.compact();
     return true;

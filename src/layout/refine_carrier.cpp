@@ -12,9 +12,9 @@ namespace {
 // A mesh while its edges are split: faces in place, twins kept.
 class Refiner {
 public:
-    Refiner(const ManifoldMesh& source, std::vector<double> limit)
+    Refiner(const ManifoldMesh& source, std::vector<double> limit, std::vector<char>& marks)
         : source_(source), positions_(source.positions()), triangles_(source.triangles()),
-          limit_(std::move(limit))
+          limit_(std::move(limit)), marks_(marks)
     {
         for (Index h = 0; h < source.halfedge_count(); ++h)
             twin_.push_back(source.twin(h));
@@ -74,6 +74,8 @@ private:
         triangles_.push_back({m, b, c});
         carrier_.face_source.push_back(carrier_.face_source[f]);
         twin_.resize(twin_.size() + 3, invalid_index);
+        marks_.insert(marks_.end(), {marks_[h], marks_[bc], 0});
+        marks_[bc] = 0;
         join(3 * added + 1, outer);
         push(3 * added + 1);     // Its entry in the queue names bc.
         join(bc, 3 * added + 2); // bc now runs from m to c.
@@ -111,6 +113,7 @@ private:
     std::vector<Vec3> positions_;
     std::vector<std::array<Index, 3>> triangles_;
     std::vector<double> limit_;
+    std::vector<char>& marks_; // Per halfedge.
     std::vector<Index> twin_;
     CarrierMesh carrier_;
     std::priority_queue<std::tuple<double, Index, Index, Index>> queue_;
@@ -119,9 +122,9 @@ private:
 } // namespace
 
 CarrierMesh refine_carrier(const ManifoldMesh& source, const std::vector<double>& limit,
-                           std::size_t max_splits)
+                           std::size_t max_splits, std::vector<char>& marks)
 {
-    return Refiner(source, limit).run(max_splits);
+    return Refiner(source, limit, marks).run(max_splits);
 }
 
 } // namespace bot2nurbs

@@ -9,12 +9,17 @@
 namespace bot2nurbs::fixtures {
 namespace {
 
+CarrierMesh refined(const ManifoldMesh& mesh, double limit, std::size_t most)
+{
+    std::vector<char> marks(mesh.halfedge_count(), 0);
+    return refine_carrier(mesh, std::vector<double>(mesh.vertex_count(), limit), most, marks);
+}
+
 TEST(RefineCarrier, leaves_no_edge_longer_than_the_limit_and_the_surface_as_it_was)
 {
     for (const auto& [name, mesh, genus] : closed_meshes()) {
         const double limit = 0.11 * mesh.box().diagonal();
-        const CarrierMesh carrier =
-            refine_carrier(mesh, std::vector<double>(mesh.vertex_count(), limit), 1000000);
+        const CarrierMesh carrier = refined(mesh, limit, 1000000);
         const ManifoldMesh& fine = carrier.mesh;
         for (Index h = 0; h < fine.halfedge_count(); ++h)
             ASSERT_LE(norm(fine.position(fine.from(h)) - fine.position(fine.to(h))), limit) << name;
@@ -37,8 +42,7 @@ TEST(RefineCarrier, leaves_no_edge_longer_than_the_limit_and_the_surface_as_it_w
 TEST(RefineCarrier, of_a_fine_mesh_is_the_mesh_itself)
 {
     const ManifoldMesh mesh = icosphere(2);
-    const CarrierMesh carrier =
-        refine_carrier(mesh, std::vector<double>(mesh.vertex_count(), 10.0), 1000000);
+    const CarrierMesh carrier = refined(mesh, 10.0, 1000000);
     EXPECT_FALSE(carrier.refined);
     EXPECT_EQ(carrier.mesh.face_count(), mesh.face_count());
 }
@@ -46,10 +50,36 @@ TEST(RefineCarrier, of_a_fine_mesh_is_the_mesh_itself)
 TEST(RefineCarrier, stops_at_the_number_of_splits_allowed)
 {
     const ManifoldMesh mesh = octahedron();
-    const CarrierMesh carrier =
-        refine_carrier(mesh, std::vector<double>(mesh.vertex_count(), 1e-3), 100);
+    const CarrierMesh carrier = refined(mesh, 1e-3, 100);
     EXPECT_EQ(carrier.mesh.vertex_count(), mesh.vertex_count() + 100);
     EXPECT_EQ(carrier.mesh.genus(), 0);
+}
+
+TEST(RefineCarrier, marks_both_halves_of_a_marked_edge_and_nothing_else)
+{
+    const ManifoldMesh mesh = cube(2);
+    std::vector<char> marks(mesh.halfedge_count(), 0);
+    double length = 0.0;
+    for (Index h = 0; h < mesh.halfedge_count(); ++h)
+        if (dot(normalized(mesh.area_vector(h / 3)),
+                normalized(mesh.area_vector(mesh.twin(h) / 3))) < 0.5) {
+            marks[h] = 1;
+            length += norm(mesh.position(mesh.to(h)) - mesh.position(mesh.from(h)));
+        }
+    const CarrierMesh carrier =
+        refine_carrier(mesh, std::vector<double>(mesh.vertex_count(), 0.07), 1000000, marks);
+    const ManifoldMesh& fine = carrier.mesh;
+    ASSERT_EQ(marks.size(), fine.halfedge_count());
+    double marked = 0.0;
+    for (Index h = 0; h < fine.halfedge_count(); ++h) {
+        EXPECT_EQ(marks[h], marks[fine.twin(h)]);
+        const bool sharp = dot(normalized(fine.area_vector(h / 3)),
+                               normalized(fine.area_vector(fine.twin(h) / 3))) < 0.5;
+        EXPECT_EQ(marks[h] != 0, sharp);
+        if (marks[h])
+            marked += norm(fine.position(fine.to(h)) - fine.position(fine.from(h)));
+    }
+    EXPECT_NEAR(marked, length, 1e-12 * length);
 }
 
 } // namespace
