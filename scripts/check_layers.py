@@ -28,6 +28,7 @@ PUBLIC_HEADERS = {
     "check_mesh": "mesh",
     "repair_mesh": "mesh",
     "closest_point": "mesh",
+    "detect_features": "mesh",
     "surface_samples": "mesh",
     "map_level": "maps",
     "quad_complex": "domain",

@@ -282,6 +282,27 @@ Json all_breps(const ConvertReport& report)
     return brep_json(faces, edges, vertices, sum);
 }
 
+// Sharp edges of all components. Of those smoothed over the first ones are listed.
+Json features_json(const std::vector<ComponentOutcome>& components)
+{
+    constexpr std::size_t most_listed = 1000;
+    Index detected = 0, kept = 0, creases = 0, corners = 0;
+    std::size_t smoothed = 0;
+    Json listed = Json::array();
+    for (const ComponentOutcome& c : components) {
+        detected += c.features.detected_edges;
+        kept += c.features.kept_edges;
+        creases += c.features.creases;
+        corners += c.features.corners;
+        smoothed += c.features.smoothed.size();
+        for (const auto& edge : c.features.smoothed)
+            if (listed.size() < most_listed)
+                listed.push_back(edge);
+    }
+    return {{"detected_edges", detected}, {"kept_edges", kept}, {"smoothed_edges", smoothed},
+            {"creases", creases},         {"corners", corners}, {"smoothed", listed}};
+}
+
 Continuity all_joins(const std::vector<ComponentOutcome>& components)
 {
     Continuity worst;
@@ -342,9 +363,7 @@ std::string report_to_json(const ConvertOptions& options, const ConvertReport& r
         // No test of our own decides this yet; the report must not claim more.
         j["embedded"] = "undecided";
     }
-    j["features"] = {{"detected_edges", report.sharp_edges},
-                     {"kept_edges", 0},
-                     {"smoothed_edges", report.sharp_edges}};
+    j["features"] = features_json(report.components);
     j["components"] = Json::array();
     for (const ComponentOutcome& c : report.components)
         j["components"].push_back(component_json(c, report.units));

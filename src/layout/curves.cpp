@@ -9,8 +9,8 @@ namespace bot2nurbs {
 namespace {
 
 constexpr double right_angle = 1.5707963267948966;
-// Turning is measured on steps of this part of a piece's width, or of the whole length: it is that of
-// the shape of a curve, not of its noise.
+// Turning is measured on steps of this part of a piece's width, or of the whole length: it is that
+// of the shape of a curve, not of its noise.
 constexpr double turning_scale = 1.0 / 6.0;
 constexpr double whole_turning_scale = 1.0 / 24.0;
 

@@ -13,8 +13,9 @@ namespace bot2nurbs {
 //! that no cut divides. What crosses no cut is the same path on both.
 class CutMesh {
 public:
-    //! Cuts along the edges with a mark on their halfedges. An edge whose two ends have no other cut
-    //! and no boundary does not open. Cost O(n); without marks none, and `mesh` must outlive it.
+    //! Cuts along the edges with a mark on their halfedges. An edge whose two ends have no other
+    //! cut and no boundary does not open. Cost O(n); without marks none, and `mesh` must outlive
+    //! it.
     CutMesh(const ManifoldMesh& mesh, const std::vector<char>& marks);
 
     const ManifoldMesh& mesh() const { return cut_ ? *cut_ : *whole_; }

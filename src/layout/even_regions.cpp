@@ -76,8 +76,8 @@ std::vector<Index> sites_for_even_regions(const LayoutLevel& level, const Tiles&
             tree[p.a].emplace_back(p.b, p.middle);
             tree[p.b].emplace_back(p.a, p.middle);
         }
-    // From the leaves up: an odd region asks for a site on the piece towards its parent. The outside
-    // is a root, and takes any number.
+    // From the leaves up: an odd region asks for a site on the piece towards its parent. The
+    // outside is a root, and takes any number.
     std::vector<Index> order, parent(outside + 1, invalid_index), towards(outside + 1);
     std::vector<char> seen(outside + 1, 0);
     for (Index k = 0; k <= outside; ++k) {

@@ -9,9 +9,9 @@
 
 namespace bot2nurbs {
 
-//! A mesh that a layout is made on: cut open along all curves, so that everything left to do happens
-//! between boundaries. Where a curve was cut, each of its vertices has several copies here, with
-//! one name.
+//! A mesh that a layout is made on: cut open along all curves, so that everything left to do
+//! happens between boundaries. Where a curve was cut, each of its vertices has several copies here,
+//! with one name.
 class LayoutLevel {
 public:
     //! `name` gives each vertex of the mesh its name, 0 .. name_count - 1; curves are in names.

@@ -50,10 +50,8 @@ std::optional<Sketch> sketch_of_path(const ComplexState& state, const Move& move
     const Index to = (from + state.sides - 1) % n;
     s.chords = {{from, to}};
     if (turn != 0)
-        s.valences = {{a, -1},
-                      {b, -1},
-                      {complex.start(s.border[from]), 1},
-                      {complex.start(s.border[to]), 1}};
+        s.valences = {
+            {a, -1}, {b, -1}, {complex.start(s.border[from]), 1}, {complex.start(s.border[to]), 1}};
     return s;
 }
 
@@ -98,8 +96,7 @@ std::optional<Sketch> sketch_of_merge(const ComplexState& state, const Move& mov
     if (!border || border->size() != 4)
         return std::nullopt;
     s.border = *border;
-    s.valences = {{complex.end(move.at), -1},
-                  {complex.start(complex.previous(move.at)), -1}};
+    s.valences = {{complex.end(move.at), -1}, {complex.start(complex.previous(move.at)), -1}};
     s.gone = v;
     return s;
 }

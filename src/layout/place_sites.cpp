@@ -37,7 +37,8 @@ std::vector<Index> sites_on_curves(const LayoutLevel& level, double width)
     return names;
 }
 
-// Interleaves the bits of three numbers of 21 bits: neighbours in this order are neighbours in space.
+// Interleaves the bits of three numbers of 21 bits: neighbours in this order are neighbours in
+// space.
 std::uint64_t morton_code(const Vec3& unit)
 {
     const auto spread = [](double x) {

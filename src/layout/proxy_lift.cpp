@@ -153,8 +153,8 @@ Result<PatchComplex> Proxy::lift(const PatchComplex& complex, Context& context) 
             chord.from = from != invalid_index
                              ? corner(from)
                              : seen_from(coarse.twin(path.nodes[i - 1].halfedge), place[p][i - 1]);
-            chord.to = to != invalid_index ? corner(to)
-                                           : seen_from(path.nodes[i].halfedge, place[p][i]);
+            chord.to =
+                to != invalid_index ? corner(to) : seen_from(path.nodes[i].halfedge, place[p][i]);
             step.chord = chords[step.face].size();
             chords[step.face].push_back(chord);
             steps[p].push_back(step);

@@ -15,8 +15,9 @@ using Chord = std::pair<Index, Index>;
 //! A side of a piece: a side of the polygon, or a chord in the given direction.
 struct TracedSide {
     bool is_chord = false;
-    Index number = invalid_index; //!< Of the chord, or the corner at which the polygon's side starts.
-    bool reversed = false;        //!< A chord walked from its second to its first end.
+    Index number =
+        invalid_index;     //!< Of the chord, or the corner at which the polygon's side starts.
+    bool reversed = false; //!< A chord walked from its second to its first end.
 };
 
 //! The pieces into which non-crossing chords divide a convex polygon, each counter-clockwise. Of a

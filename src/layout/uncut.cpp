@@ -13,7 +13,9 @@ PatchComplex uncut(const PatchComplex& complex, const CutMesh& cut, const Manifo
     std::vector<PatchComplex::Side> side(complex.paths().size()); // Where each path went, forward.
     // Paths along a cut, by their ends and first step.
     std::map<std::tuple<Index, Index, Index>, Index> along;
-    const auto second = [](const SurfacePath& p) { return p.nodes.empty() ? p.b : p.nodes[0].vertex; };
+    const auto second = [](const SurfacePath& p) {
+        return p.nodes.empty() ? p.b : p.nodes[0].vertex;
+    };
     const auto last = [](const SurfacePath& p) {
         return p.nodes.empty() ? p.a : p.nodes.back().vertex;
     };

@@ -59,17 +59,15 @@ void Valences::move(Index from, Index to)
 
 double Valences::cost(Index vertex, int edges) const
 {
+    const double d = static_cast<double>(edges) - wanted(vertex);
     if (angle_[vertex] > 0.0) {
         const double faces = static_cast<double>(edges) - 1.0;
-        const double wanted = std::max(1.0, angle_[vertex]);
         const double flat = sides_ == 4 ? flat_corner : 1.5 * flat_corner;
         if (faces < 1.0 || angle_[vertex] > flat * faces)
             return degenerate_cost;
-        return valence_weight * (faces - wanted) * (faces - wanted);
-    }
-    if (sides_ == 4 && edges == 2)
+    } else if (sides_ == 4 && edges == 2) {
         return degenerate_cost;
-    const double d = static_cast<double>(edges) - (sides_ == 3 ? 6.0 : 4.0);
+    }
     return valence_weight * d * d;
 }
 

@@ -3,13 +3,14 @@
 
 #include "layout/patch_complex.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace bot2nurbs {
 
 //! Number of edges at each vertex of K_tri or K while it is improved, and what numbers other than
-//! the wanted one cost. Wanted are six edges inside K_tri and four inside K; at the boundary as many
-//! faces as the angle of the mesh there asks for, of 60 and of 90 degrees.
+//! the wanted one cost. Wanted are six edges inside K_tri and four inside K; at the boundary as
+//! many faces as the angle of the mesh there asks for, of 60 and of 90 degrees.
 class Valences {
 public:
     //! `sides` of every face: 3 or 4.
@@ -22,6 +23,11 @@ public:
 
     //! What `edges` edges at a vertex cost, in units of the energy of a patch of the wanted size.
     double cost(Index vertex, int edges) const;
+    //! How many edges more than wanted a vertex has.
+    double excess(Index vertex) const
+    {
+        return static_cast<double>(count_[vertex]) - wanted(vertex);
+    }
     //! By how much the cost changes with the number of edges.
     double change(Index vertex, int by) const
     {
@@ -38,6 +44,11 @@ public:
     }
 
 private:
+    double wanted(Index vertex) const
+    {
+        const double inside = sides_ == 3 ? 6.0 : 4.0;
+        return angle_[vertex] > 0.0 ? 1.0 + std::max(1.0, angle_[vertex]) : inside;
+    }
     int least(Index vertex) const
     {
         const int inside = sides_ == 3 ? 3 : 2;

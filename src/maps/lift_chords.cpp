@@ -77,7 +77,8 @@ private:
             v.position = edge_point(mesh_, v.edge, v.t);
         } else {
             v.face = before_.face[triangle_at_[a]];
-            const auto wa = before_.bary_in(mesh_, a, v.face), wb = before_.bary_in(mesh_, b, v.face);
+            const auto wa = before_.bary_in(mesh_, a, v.face),
+                       wb = before_.bary_in(mesh_, b, v.face);
             for (int k = 0; k < 3; ++k)
                 v.bary[k] = (1.0 - share) * wa[k] + share * wb[k];
             v.position = mesh_.at({v.face, v.bary});
@@ -132,17 +133,17 @@ private:
     const std::vector<Vec2>& uv_;
     std::vector<BorderPlace> places_;
     std::vector<std::vector<Index>> on_step_; // Per border vertex: the places on the step after it.
-    std::vector<Index> triangle_at_;          // Per border vertex: the triangle at the step after it.
-    std::vector<Index> number_;               // Per vertex before: its number now.
+    std::vector<Index> triangle_at_; // Per border vertex: the triangle at the step after it.
+    std::vector<Index> number_;      // Per vertex before: its number now.
     std::vector<Index> number_of_place_;
     MappedDisk result_;
 };
 
 } // namespace
 
-std::optional<std::vector<std::vector<PathNode>>> lift_chords(const std::vector<PathSide>& border,
-                                                              const std::vector<BorderChord>& chords,
-                                                              OverlayBuilder& builder)
+std::optional<std::vector<std::vector<PathNode>>>
+lift_chords(const std::vector<PathSide>& border, const std::vector<BorderChord>& chords,
+            OverlayBuilder& builder)
 {
     const ManifoldMesh& mesh = builder.mesh();
     const std::optional<MappedDisk> mapped = map_disk(builder, border);

@@ -6,9 +6,9 @@
 namespace bot2nurbs {
 
 //! A place on the border of a region: on one of its sides between the points `step` and `step` + 1
-//! of that side's path as it is walked, at a share of the way; share 0 of step 0 is the corner where
-//! the side starts. Which step it is in is combinatorial, so two regions on both sides of a path name
-//! the same place.
+//! of that side's path as it is walked, at a share of the way; share 0 of step 0 is the corner
+//! where the side starts. Which step it is in is combinatorial, so two regions on both sides of a
+//! path name the same place.
 struct BorderPlace {
     Index side = 0, step = 0;
     double share = 0.0;
@@ -28,12 +28,12 @@ struct BorderChord {
 };
 
 //! Draws chords, which do not cross and share no place but corners, in the map of the disk within
-//! `border` to a regular polygon, and pulls them back to the mesh: for each, the mesh edges crossed,
-//! in order. Where a border runs along a mesh edge, a place on it is a crossing of that edge, and
-//! belongs to the chord that ends there, not to that which starts. Empty when the disk cannot be
-//! mapped.
-std::optional<std::vector<std::vector<PathNode>>> lift_chords(const std::vector<PathSide>& border,
-                                                              const std::vector<BorderChord>& chords,
-                                                              OverlayBuilder& builder);
+//! `border` to a regular polygon, and pulls them back to the mesh: for each, the mesh edges
+//! crossed, in order. Where a border runs along a mesh edge, a place on it is a crossing of that
+//! edge, and belongs to the chord that ends there, not to that which starts. Empty when the disk
+//! cannot be mapped.
+std::optional<std::vector<std::vector<PathNode>>>
+lift_chords(const std::vector<PathSide>& border, const std::vector<BorderChord>& chords,
+            OverlayBuilder& builder);
 
 } // namespace bot2nurbs

@@ -18,7 +18,6 @@ ConvertReport example_report()
     report.input_faces = 16;
     report.units = "mm";
     report.diagonal = 4.0;
-    report.sharp_edges = 3;
     for (const Index i : {0u, 1u}) {
         ComponentOutcome c;
         c.genus = static_cast<int>(i);

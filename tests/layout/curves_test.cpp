@@ -49,7 +49,8 @@ TEST(Curves, pieces_are_even_and_turn_by_a_right_angle_at_most)
         line.push_back({0.1 * i, 0.0, 0.0});
     }
     const std::vector<double> even(41, 1.0);
-    EXPECT_EQ(divide_polyline(circle, even, 100.0, 1), (std::vector<std::size_t>{0, 10, 20, 30, 40}));
+    EXPECT_EQ(divide_polyline(circle, even, 100.0, 1),
+              (std::vector<std::size_t>{0, 10, 20, 30, 40}));
     EXPECT_EQ(divide_polyline(line, even, 100.0, 1), (std::vector<std::size_t>{0, 40}));
     EXPECT_EQ(divide_polyline(line, even, 1.0, 1), (std::vector<std::size_t>{0, 10, 20, 30, 40}));
     EXPECT_EQ(divide_polyline(line, even, 100.0, 3).size(), 4u);

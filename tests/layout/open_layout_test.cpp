@@ -45,11 +45,12 @@ struct Case {
 std::vector<Case> cases()
 {
     const ManifoldMesh plate = holed_plate(1, 2);
-    std::vector<Case> result{{"square", square(6), {}},
-                             {"cylinder", open_cylinder(16, 6), {}},
-                             {"cube", cube(4), crease_paths(cube(4))},
-                             {"slit", square(8), {{FeatureKind::crease, straight_run(square(8), 4)}}},
-                             {"polycube", polycube({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}), {}}};
+    std::vector<Case> result{
+        {"square", square(6), {}},
+        {"cylinder", open_cylinder(16, 6), {}},
+        {"cube", cube(4), crease_paths(cube(4))},
+        {"slit", square(8), {{FeatureKind::crease, straight_run(square(8), 4)}}},
+        {"polycube", polycube({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}), {}}};
     result.back().mesh = split_in_four(result.back().mesh);
     result.back().features = crease_paths(result.back().mesh);
     return result;
@@ -158,7 +159,8 @@ TEST(OpenLayout, is_a_valid_domain_with_the_boundary_and_creases_of_its_source)
                 double creased = 0.0, expected = 0.0;
                 for (Index e = 0; e < domain.edges.size(); ++e)
                     if (domain.edges[e].crease) {
-                        Vec3 last = domain.carrier.mesh.position(domain.vertices[domain.edges[e].a]);
+                        Vec3 last =
+                            domain.carrier.mesh.position(domain.vertices[domain.edges[e].a]);
                         std::vector<Vec3> points;
                         for (const PathPoint& p : domain.edges[e].path) {
                             ASSERT_TRUE(p.is_vertex());

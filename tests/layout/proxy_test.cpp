@@ -19,10 +19,9 @@ LayoutLevel level_of(const CutMesh& cut, const ManifoldMesh& mesh,
     std::vector<Index> name;
     for (Index v = 0; v < cut.mesh().vertex_count(); ++v)
         name.push_back(cut.original(v));
-    return LayoutLevel(cut.mesh(), name, mesh.vertex_count(),
-                       std::vector<double>(name.size(), 1.0),
-                       trace_curves(mesh, mark_edges(mesh, features),
-                                    std::vector<char>(mesh.vertex_count(), 0)));
+    return LayoutLevel(
+        cut.mesh(), name, mesh.vertex_count(), std::vector<double>(name.size(), 1.0),
+        trace_curves(mesh, mark_edges(mesh, features), std::vector<char>(mesh.vertex_count(), 0)));
 }
 
 // The base complex of a few sites on a level.
@@ -97,9 +96,9 @@ TEST(Proxy, lifts_a_complex_to_one_that_covers_the_mesh_once)
             ASSERT_TRUE(map_to_polygon(*overlay, regular_polygon(3))) << c.name;
             for (const auto& t : overlay->triangles)
                 covered +=
-                    0.5 *
-                    norm(cross(overlay->vertices[t[1]].position - overlay->vertices[t[0]].position,
-                               overlay->vertices[t[2]].position - overlay->vertices[t[0]].position));
+                    0.5 * norm(cross(
+                              overlay->vertices[t[1]].position - overlay->vertices[t[0]].position,
+                              overlay->vertices[t[2]].position - overlay->vertices[t[0]].position));
         }
         for (Index f = 0; f < fine.mesh().face_count(); ++f)
             whole += 0.5 * norm(fine.mesh().area_vector(f));

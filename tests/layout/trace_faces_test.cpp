@@ -41,8 +41,7 @@ TEST(TraceFaces, a_fan_of_chords_from_one_corner)
 TEST(TraceFaces, spokes_to_a_point_inside_meet_every_side_once)
 {
     EXPECT_EQ(pieces(3, {{0, inside}, {1, inside}, {2, inside}}), Pieces({"0bA", "1cB", "2aC"}));
-    EXPECT_EQ(pieces(6, {{1, inside}, {3, inside}, {5, inside}}),
-              Pieces({"0aC5", "12bA", "34cB"}));
+    EXPECT_EQ(pieces(6, {{1, inside}, {3, inside}, {5, inside}}), Pieces({"0aC5", "12bA", "34cB"}));
 }
 
 } // namespace
