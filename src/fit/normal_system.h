@@ -79,6 +79,7 @@ private:
     FactorPlan plan_;
     std::vector<std::size_t> pair_offset_; //!< Per piece: first of its slots.
     std::vector<int> slot_;                //!< Per piece and pair (i <= j): entry of the pattern.
+    std::vector<double> energy_;           //!< Likewise: the piece's thin-plate energy.
     std::vector<double> right_;            //!< 3 per column.
     ScaledFactor scalar_, coupled_;
     double coupled_condition_ = 0.0;
