@@ -14,11 +14,12 @@ namespace {
 //! Pieces assembled in parallel before their blocks are added to the matrix in piece order.
 constexpr Index batch_pieces = 512;
 constexpr Index chunk_pieces = 16;
-//! Conjugate gradients with the factor of an earlier round: at most this many iterations, which
-//! cost less than half a factorisation (a factor that is any good does with them), down to this
-//! share of the preconditioned residual: far below what moving feet change about a round.
-constexpr int reuse_iterations = 10;
-constexpr double reuse_tolerance = 1e-3;
+//! Conjugate gradients with the factor of an earlier round: at most as many iterations as cost half
+//! a factorisation, down to a residual far below what moving feet change about a round.
+constexpr GradientLimits with_old_factor{20, 1e-3};
+//! With the factor, in single precision, of the matrix itself: a few iterations make up for its
+//! rounding. If that takes more, the matrix needs a factor in double precision.
+constexpr GradientLimits with_own_factor{12, 1e-8};
 
 } // namespace
 
@@ -134,16 +135,17 @@ NormalSystem::Solution NormalSystem::solve(const RoundProblem& problem, double c
 NormalSystem::Solution NormalSystem::solve_decoupled(double condition_limit, const Context& context)
 {
     Solution solution;
-    if (!scalar_.factorize(context) || context.cancelled())
+    if (!scalar_.factorize(ScaledFactor::Precision::full, context) || context.cancelled())
         return solution;
     solution.condition = scalar_.condition(context);
     if (!(solution.condition <= condition_limit)) {
         scalar_.drop_factor();
         return solution;
     }
-    const Eigen::VectorXd x =
-        solve_by_scalar(Eigen::Map<const Eigen::VectorXd>(right_.data(), 3 * scalar_.size()));
-    set_move(x, solution);
+    const Eigen::VectorXd x = solve_by_scalar(
+        Eigen::Map<const Eigen::VectorXd>(right_.data(), 3 * scalar_.size()), context);
+    if (!context.cancelled())
+        set_move(x, solution);
     return solution;
 }
 
@@ -157,47 +159,45 @@ void NormalSystem::set_move(const Eigen::VectorXd& x, Solution& solution) const
     solution.ok = true;
 }
 
-Eigen::VectorXd NormalSystem::solve_by_scalar(const Eigen::VectorXd& right) const
+Eigen::VectorXd NormalSystem::solve_by_scalar(const Eigen::VectorXd& right,
+                                              const Context& context) const
 {
     using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
     const Eigen::Index n = scalar_.size();
     Eigen::VectorXd x(3 * n);
     Eigen::Map<Columns>(x.data(), n, 3) =
-        scalar_.solve_three(Eigen::Map<const Columns>(right.data(), n, 3));
+        scalar_.solve_three(Eigen::Map<const Columns>(right.data(), n, 3), context);
     return x;
 }
 
 NormalSystem::Solution NormalSystem::solve_coupled(double condition_limit, const Context& context)
 {
     const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(right_.data(), coupled_.size());
-    const auto cancelled = [&] { return context.cancelled(); };
+    const auto by_coupled = [&](const Eigen::VectorXd& r) { return coupled_.solve(r, context); };
+    const auto by_scalar = [&](const Eigen::VectorXd& r) { return solve_by_scalar(r, context); };
     Solution solution;
     std::optional<Eigen::VectorXd> x;
     if (coupled_.has_factor()) {
         // Rounds differ little: a factor of an earlier one still preconditions well, and a few
         // iterations cost much less than a factorisation.
-        x = conjugate_gradients(
-            coupled_, right, reuse_iterations, reuse_tolerance,
-            [&](const Eigen::VectorXd& r) -> Eigen::VectorXd { return coupled_.solve(r); },
-            cancelled);
+        x = conjugate_gradients(coupled_, right, with_old_factor, by_coupled, context);
         solution.condition = coupled_condition_;
     } else if (scalar_.has_factor()) {
-        x = conjugate_gradients(
-            coupled_, right, reuse_iterations, reuse_tolerance,
-            [&](const Eigen::VectorXd& r) { return solve_by_scalar(r); }, cancelled);
-        solution.condition = 0.0;
+        x = conjugate_gradients(coupled_, right, with_old_factor, by_scalar, context);
     }
-    if (!x && !context.cancelled()) {
-        if (!coupled_.factorize(context) || context.cancelled())
-            return solution;
+    for (const auto precision : {ScaledFactor::Precision::single, ScaledFactor::Precision::full}) {
+        if (x || context.cancelled())
+            break;
+        if (!coupled_.factorize(precision, context))
+            continue;
         solution.condition = coupled_condition_ = coupled_.condition(context);
         if (!(solution.condition <= condition_limit)) {
             coupled_.drop_factor();
             return solution;
         }
-        x = coupled_.solve(right);
+        x = conjugate_gradients(coupled_, right, with_own_factor, by_coupled, context);
     }
-    if (x)
+    if (x && !context.cancelled())
         set_move(*x, solution);
     return solution;
 }

@@ -73,7 +73,7 @@ private:
     //! Values per unknown in the order of the columns, as moves.
     void set_move(const Eigen::VectorXd& x, Solution& solution) const;
     //! Solves x, y and z each with the factor of the decoupled matrix.
-    Eigen::VectorXd solve_by_scalar(const Eigen::VectorXd& right) const;
+    Eigen::VectorXd solve_by_scalar(const Eigen::VectorXd& right, const Context& context) const;
 
     const ReducedNetwork& network_;
     FactorPlan plan_;
