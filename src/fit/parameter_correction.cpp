@@ -16,7 +16,7 @@ constexpr std::size_t chunk_points = 64;
 constexpr double suspicious_medians = 5.0;
 //! Cells per Bezier piece of the tessellation that seeds the search from scratch: only the basin of
 //! the right foot has to be found.
-constexpr Index seed_cells = 2;
+constexpr Index seed_cells = 1;
 
 } // namespace
 
