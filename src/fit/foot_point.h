@@ -39,7 +39,7 @@ private:
 
     const QuadComplex& complex_;
     const SplineSurface& surface_;
-    double step_tolerance_; //!< Steps shorter than this end the search.
+    double diagonal_; //!< Of the surface's coefficients.
 };
 
 } // namespace bot2nurbs

@@ -64,8 +64,8 @@ template <class Real> auto FrontalFactor<Real>::panel(const FactorPlan::Supernod
             Size(block_) * node.width()};
 }
 
-template <class Real>
-auto FrontalFactor<Real>::panel(const FactorPlan::Supernode& node) const -> ConstPanel
+template <class Real> auto FrontalFactor<Real>::panel(const FactorPlan::Supernode& node) const
+    -> ConstPanel
 {
     const std::size_t square = static_cast<std::size_t>(block_) * block_;
     return {values_.data() + node.values * square, Size(block_) * node.height(),
@@ -114,9 +114,9 @@ template <class Real> bool FrontalFactor<Real>::factorize(const std::vector<doub
     });
 }
 
-template <class Real>
-void FrontalFactor<Real>::assemble(int s, const std::vector<double>& values,
-                                   const Eigen::VectorXd& scale, std::vector<Matrix>& updates)
+template <class Real> void FrontalFactor<Real>::assemble(int s, const std::vector<double>& values,
+                                                         const Eigen::VectorXd& scale,
+                                                         std::vector<Matrix>& updates)
 {
     const FactorPlan::Supernode& node = plan_->supernodes[s];
     const int b = block_, per_slot = b == 1 ? 1 : 6;
@@ -152,7 +152,8 @@ void FrontalFactor<Real>::assemble(int s, const std::vector<double>& values,
     }
 }
 
-//! Makes the panel of a node columns of the factor, and subtracts from `update` what they stand for.
+//! Makes the panel of a node columns of the factor, and subtracts from `update` what they stand
+//! for.
 template <class Real>
 bool FrontalFactor<Real>::eliminate(int s, Matrix& update, bool wide, const Context& context)
 {

@@ -10,9 +10,9 @@
 namespace bot2nurbs {
 
 //! A multifrontal Cholesky factor of a symmetric positive definite sparse matrix of symmetric
-//! b x b blocks, b = 1 or 3, in float or double. All arithmetic is in dense kernels; subtrees of the
-//! elimination tree run side by side, and so do parts of the large fronts above them. Same bytes
-//! for any thread count.
+//! b x b blocks, b = 1 or 3, in float or double. All arithmetic is in dense kernels; subtrees of
+//! the elimination tree run side by side, and so do parts of the large fronts above them. Same
+//! bytes for any thread count.
 template <class Real> class FrontalFactor {
 public:
     //! The plan must outlive this.
