@@ -49,7 +49,7 @@ public:
     void run()
     {
         const bool quads = state_.sides == 4;
-        Mark topology, place;
+        Mark topology = 0, place = 0;
         for (int turn = 0; turn < max_turns && !context_.cancelled(); ++turn) {
             if (turn >= (quads ? quad_turns : triangle_turns) && worst_energy() < bad_energy)
                 break;
@@ -60,7 +60,7 @@ public:
                 break;
         }
         if (quads) {
-            Mark once;
+            Mark once = 0;
             round(moves_at_paths(Kind::straighten, 0), once);
             remove_doublets();
         }
