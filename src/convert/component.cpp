@@ -200,6 +200,8 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
     if (!samples)
         return samples.error();
 
+    add_curve_samples(*unit, result.domain.complex, *charts, {}, *samples);
+
     stage("fit");
     const Result<SplineNetwork> network =
         build_spline_network(result.domain.complex, options.spline);

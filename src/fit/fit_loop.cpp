@@ -173,7 +173,10 @@ std::vector<FitRow> FitLoop::rows_at(const State& state, const std::vector<doubl
         row.residual = points[i] - s.position;
         row.least_mu = response_.least_mu(d.quad);
         // The distance to a rim grows in every direction across it.
-        if (!walk.on_sharp_edge(d))
+        row.of_curve = !on_curve.empty() && on_curve[i];
+        if (row.of_curve)
+            row.normal = walk.curve_tangent(state.feet[i]);
+        else if (!on_sharp_edge(network_.complex, d))
             row.normal = normalized(cross(s.du, s.dv));
         return row;
     };
@@ -240,7 +243,8 @@ FitLoop::State FitLoop::moved_without_folds(const State& state, std::vector<Vec3
 void FitLoop::find_feet(State& state) const
 {
     state.quad_energy = quad_energies(state.surface, context_);
-    state.feet = correct_parameters(network_.complex, state.surface, points, where, context_);
+    state.feet =
+        correct_parameters(network_.complex, state.surface, points, where, on_curve, context_);
 }
 
 NormalSystem::Solution FitLoop::solve(const State& state, const std::vector<FitRow>& rows,

@@ -130,11 +130,11 @@ void SurfaceWalk::names(const DomainPoint& w, std::vector<DomainPoint>& out) con
     out.push_back(on_side(twin, 1.0 - along[side]));
 }
 
-bool SurfaceWalk::on_sharp_edge(const DomainPoint& w) const
+bool on_sharp_edge(const QuadComplex& complex, const DomainPoint& w)
 {
     const bool on[4] = {w.v <= 0.0, w.u >= 1.0, w.v >= 1.0, w.u <= 0.0};
     for (Index s = 0; s < 4; ++s)
-        if (on[s] && complex_.is_sharp(complex_.edge(4 * w.quad + s)))
+        if (on[s] && complex.is_sharp(complex.edge(4 * w.quad + s)))
             return true;
     return false;
 }

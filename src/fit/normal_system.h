@@ -14,8 +14,11 @@ struct FitRow {
     Index piece = invalid_index;
     double s = 0.0, t = 0.0; //!< Parameters in the piece, in [0, 1].
     double weight = 0.0;
-    Vec3 residual;         //!< Sample minus surface point: the wanted move.
-    Vec3 normal;           //!< Unit normal of the surface there; zero: all directions count alike.
+    Vec3 residual; //!< Sample minus surface point: the wanted move.
+    Vec3 normal;   //!< Unit normal of the surface there; zero: all directions count alike.
+    //! True: the sample is one of a curve, whose unit tangent is in place of the normal; distances
+    //! across the tangent count in full, and along it with mu.
+    bool of_curve = false;
     double least_mu = 0.0; //!< See RoundProblem.
 };
 
@@ -31,6 +34,7 @@ RowsByPiece group_by_piece(const std::vector<FitRow>& rows, Index piece_count);
 //!
 //! Over moves d of the free unknowns it minimises
 //!   sum_i w_i [(1 - mu) (n_i . (r_i - d_i))^2 + mu |r_i - d_i|^2] + sum_q f_q E_q(x + d)
+//! (for rows of a curve with unit tangent t_i: |r_i - d_i|^2 - (1 - mu) (t_i . (r_i - d_i))^2),
 //! with mu the problem's or, where that is larger, the row's own, d_i the surface's move at row i
 //! and E_q the exact thin-plate energy of quad q.
 struct RoundProblem {

@@ -33,9 +33,10 @@ void PieceForm::add_rows(const RoundProblem& problem, std::vector<double>& scrat
         }
         const Vec3 &n = row.normal, &r = row.residual;
         const double mu = std::max(problem.mu, row.least_mu);
-        // A row without a normal counts in full in every direction.
-        const double along = n == Vec3{} ? 0.0 : (1.0 - mu) * row.weight;
-        const double all = n == Vec3{} ? row.weight : mu * row.weight;
+        // A row without a normal counts in full in every direction, one of a curve in all but one.
+        const double less = (1.0 - mu) * row.weight;
+        const double along = n == Vec3{} ? 0.0 : row.of_curve ? -less : less;
+        const double all = n == Vec3{} || row.of_curve ? row.weight : mu * row.weight;
         const Vec3 wanted = along * dot(n, r) * n + all * r;
         for (std::size_t i = 0; i < k; ++i)
             for (int c = 0; c < 3; ++c)

@@ -62,7 +62,7 @@ public:
         if (quads) {
             Mark once = 0;
             round(moves_at_paths(Kind::straighten, 0), once);
-            remove_doublets();
+            remove_degenerate();
         }
     }
 
@@ -200,23 +200,23 @@ private:
         state_.energies.insert(state_.energies.end(), p.energies.begin(), p.energies.end());
     }
 
-    // Removes what vertices of degree two are left, each by the change that distorts least: merging
-    // its two quads or, where that would squeeze a limb into one patch, turning an edge towards it.
+    // Removes what degenerate vertices are left, each by the change that distorts least: an edge
+    // turned towards it or, where it has degree two, merging its two quads.
     // Ends: a merge makes the quads fewer, a turn makes such vertices fewer.
-    void remove_doublets()
+    void remove_degenerate()
     {
-        while (!context_.cancelled() && complex_.face_count() > min_faces) {
-            std::optional<Proposal> best;
+        bool changed = true;
+        while (changed && !context_.cancelled() && complex_.face_count() > min_faces) {
+            changed = false;
             for (const Side& s : complex_.vertex_sides()) {
-                if (!state_.valences.is_doublet(complex_.start(s)))
+                if (!complex_.paths()[s.path].alive ||
+                    !state_.valences.is_degenerate(complex_.start(s)))
                     continue;
-                best = best_removal(s);
-                if (best)
-                    break;
+                if (std::optional<Proposal> best = best_removal(s)) {
+                    apply(std::move(*best));
+                    changed = true;
+                }
             }
-            if (!best)
-                return;
-            apply(std::move(*best));
         }
     }
     std::optional<Proposal> best_removal(const Side& at_v)
@@ -224,6 +224,8 @@ private:
         const Index v = complex_.start(at_v);
         std::vector<Move> moves{{Kind::merge, at_v, 0}};
         for (const Side& spoke : complex_.star(at_v)) {
+            if (complex_.face_at(spoke) == invalid_index)
+                continue;
             const Side first = complex_.next(spoke);
             for (const Side& outer : {first, complex_.next(first)})
                 for (const Index turn : {1u, 2u})
@@ -233,20 +235,19 @@ private:
         for (const Move& move : moves) {
             const double any = std::numeric_limits<double>::infinity();
             std::optional<Proposal> p = propose(state_, move, any, 0.0, builders_.local());
-            if (!p || (move.kind == Kind::rotate && !removes_doublet(*p, v)))
+            if (!p || (move.kind == Kind::rotate && !removes_degenerate(*p, v)))
                 continue;
             if (!best || gain(move.kind, *p) > gain(Kind::merge, *best))
                 best = std::move(p);
         }
         return best;
     }
-
-    // Whether a turn gives vertex v an edge and leaves no other vertex with two.
-    bool removes_doublet(const Proposal& p, Index v) const
+    // Whether a turn gives vertex v an edge and makes no other vertex degenerate.
+    bool removes_degenerate(const Proposal& p, Index v) const
     {
         bool gains = false;
         for (const auto& [w, by] : p.valences) {
-            if (by < 0 && state_.valences.is_doublet(w, by))
+            if (by < 0 && state_.valences.is_degenerate(w, by))
                 return false;
             gains = gains || (w == v && by > 0);
         }

@@ -3,165 +3,30 @@
 
 #include "domain/domain_paths.h"
 #include "layout/base_complex.h"
+#include "layout/ground.h"
 #include "layout/improve.h"
 #include "layout/pair_triangles.h"
 #include "layout/place_sites.h"
 #include "layout/proxy.h"
-#include "layout/refine_carrier.h"
 #include "layout/size_field.h"
 #include "layout/split_in_quads.h"
 #include "layout/uncut.h"
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 namespace bot2nurbs {
 
 namespace {
 
-// The default number of patches is the shape's bending, k1^2 + k2^2 integrated, between bounds: 25
-// on any sphere, 108 on a torus with radii 1 and 0.4. The upper bound keeps fits fast and B-Reps
-// easy to handle; a tolerance or --patches asks for more.
-constexpr double min_default_patches = 24.0;
-constexpr double max_default_patches = 150.0;
-constexpr double max_default_patches_genus_3 = 300.0;
-constexpr double patches_per_handle = 16.0;
-// Curvature is measured at this fraction of the box diagonal.
-constexpr double curvature_scale = 0.015;
 // Collapsing quads makes the layout regular; this many more are made than wanted, to collapse.
 constexpr double surplus = 1.2;
-// Carrier edges are at most this part of the width of a patch, so that a patch has enough faces for
-// a smooth map: about forty.
-constexpr double carrier_resolution = 0.3;
 // Edges of a coarse mesh that stands for the carrier are this part of a patch's width; it is made
 // where it has so many times fewer faces.
 constexpr double proxy_resolution = 0.2;
 constexpr double proxy_saving = 2.5;
 // Rounds of Lloyd's relaxation; more move sites by less than a mesh edge.
 constexpr int relaxation_rounds = 8;
-// Refining a carrier adds at most this many vertices per face, plus the constant: a sliver whose
-// area is nothing beside its length would ask for any number.
-constexpr std::size_t max_refinement_factor = 4;
-constexpr std::size_t max_refinement_floor = 20000;
-
-double surface_area(const ManifoldMesh& mesh)
-{
-    double area = 0.0;
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        area += 0.5 * norm(mesh.area_vector(f));
-    return area;
-}
-
-// Area in the metric scaled by a density per vertex.
-double scaled_area(const ManifoldMesh& mesh, const std::vector<double>& density)
-{
-    double area = 0.0;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const auto& t = mesh.triangle(f);
-        const double d = (density[t[0]] + density[t[1]] + density[t[2]]) / 3.0;
-        area += 0.5 * norm(mesh.area_vector(f)) * d * d;
-    }
-    return area;
-}
-
-// `handles` is the genus of a closed surface.
-Index default_patches(double bending, double handles)
-{
-    double limit = handles >= 3.0 ? max_default_patches_genus_3 : max_default_patches;
-    limit = std::max(limit, patches_per_handle * handles);
-    const double least = std::max(min_default_patches, 0.5 * patches_per_handle * handles);
-    return static_cast<Index>(std::lround(std::clamp(bending, least, limit)));
-}
-
-int euler_characteristic(const ManifoldMesh& mesh)
-{
-    return static_cast<int>(mesh.vertex_count()) - static_cast<int>(mesh.edge_count()) +
-           static_cast<int>(mesh.face_count());
-}
-
-// Marks of the carrier's edges, and its vertices at which a crease or the boundary turns.
-struct Features {
-    std::vector<char> marks;  // Per halfedge.
-    std::vector<char> corner; // Per vertex.
-
-    Features(const ManifoldMesh& mesh, const std::vector<FeaturePath>& paths)
-        : corner(mesh.vertex_count(), 0)
-    {
-        std::vector<FeaturePath> edges;
-        for (const FeaturePath& path : paths) {
-            if (path.kind != FeatureKind::corner)
-                edges.push_back(path);
-            else
-                for (const Index v : path.vertices)
-                    corner[v] = 1;
-        }
-        marks = mark_edges(mesh, edges);
-    }
-    // Vertices that came with a refinement are no corners.
-    void fit_to(const ManifoldMesh& carrier) { corner.resize(carrier.vertex_count(), 0); }
-};
-
-// The carrier and the level of the whole mesh.
-struct Ground {
-    CarrierMesh carrier;
-    Features features;
-    std::unique_ptr<CutMesh> cut;
-    std::unique_ptr<LayoutLevel> level;
-    double width = 0.0; // Of a patch, in the metric of the density.
-};
-
-std::vector<double> density_by_name(const CutMesh& cut, const std::vector<double>& density,
-                                    Index names)
-{
-    std::vector<double> result(names, 0.0);
-    for (Index v = 0; v < density.size(); ++v)
-        result[cut.original(v)] = std::max(result[cut.original(v)], density[v]);
-    return result;
-}
-
-Ground prepare(const ManifoldMesh& source, const LayoutOptions& options, LayoutSummary& summary)
-{
-    Features features(source, options.features);
-    const double smoothing = curvature_scale * source.box().diagonal();
-    SizeField field;
-    {
-        const CutMesh cut(source, features.marks);
-        field = measure_size_field(cut.mesh(), smoothing);
-        field.density = density_by_name(cut, field.density, source.vertex_count());
-    }
-    const double handles = 0.5 * (2 - euler_characteristic(source));
-    summary.target_patches =
-        options.patches ? *options.patches : default_patches(field.bending, handles);
-    const double count = static_cast<double>(summary.target_patches);
-    std::vector<double> limit(source.vertex_count());
-    const double width = std::sqrt(surface_area(source) / count);
-    for (Index v = 0; v < source.vertex_count(); ++v)
-        limit[v] = carrier_resolution * width / field.density[v];
-    CarrierMesh carrier = refine_carrier(
-        source, limit, max_refinement_floor + max_refinement_factor * source.face_count(),
-        features.marks);
-    features.fit_to(carrier.mesh);
-    if (carrier.refined)
-        summary.notes.push_back("edges split where the mesh is coarse for its patches: " +
-                                std::to_string(source.face_count()) + " faces became " +
-                                std::to_string(carrier.mesh.face_count()));
-
-    Ground ground{std::move(carrier), std::move(features), nullptr, nullptr, 0.0};
-    const ManifoldMesh& mesh = ground.carrier.mesh;
-    ground.cut = std::make_unique<CutMesh>(mesh, ground.features.marks);
-    const ManifoldMesh& cut = ground.cut->mesh();
-    std::vector<double> density = measure_size_field(cut, smoothing).density;
-    ground.width = std::sqrt(scaled_area(cut, density) / count);
-    std::vector<Index> name(cut.vertex_count());
-    for (Index v = 0; v < cut.vertex_count(); ++v)
-        name[v] = ground.cut->original(v);
-    ground.level = std::make_unique<LayoutLevel>(
-        cut, std::move(name), mesh.vertex_count(), std::move(density),
-        trace_curves(mesh, ground.features.marks, ground.features.corner));
-    return ground;
-}
-
 // How many sites to place inside so that about `patches` quads come out.
 Index inner_sites(const LayoutLevel& level, double width, double patches)
 {
@@ -273,7 +138,7 @@ Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOption
                      invalid_index};
     LayoutResult result;
     LayoutSummary& summary = result.summary;
-    Ground ground = prepare(source, options, summary);
+    Ground ground = prepare_ground(source, options, summary);
     if (context.cancelled())
         return Context::cancelled_error("layout");
 
@@ -297,11 +162,11 @@ Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOption
         return complex.error();
     const auto on_carrier = [&](const PatchComplex& made) -> Result<PatchComplex> {
         if (!proxy)
-            return uncut(made, *ground.cut, ground.carrier.mesh, ground.features.marks);
+            return uncut(made, *ground.cut, ground.carrier.mesh, ground.marks);
         Result<PatchComplex> lifted = proxy->lift(made, context);
         if (!lifted)
             return lifted;
-        return uncut(*lifted, *ground.cut, ground.carrier.mesh, ground.features.marks);
+        return uncut(*lifted, *ground.cut, ground.carrier.mesh, ground.marks);
     };
     if (!options.split_triangles) {
         PatchComplex quads = *complex;
@@ -316,7 +181,7 @@ Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOption
             if (!lifted)
                 return lifted.error();
             Result<QuadDomain> domain =
-                make_domain(*lifted, std::move(ground.carrier), ground.features.corner);
+                make_domain(*lifted, std::move(ground.carrier), ground.corner);
             if (!domain)
                 return domain.error();
             result.domain = std::move(*domain);
@@ -331,8 +196,7 @@ Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOption
     Result<SplitComplex> split = split_in_quads(*triangles, source, ground.carrier, context);
     if (!split)
         return split.error();
-    const std::vector<double> density =
-        measure_size_field(split->carrier->mesh, curvature_scale * source.box().diagonal()).density;
+    const std::vector<double> density(split->carrier->mesh.vertex_count(), 1.0);
     improve_quads(split->complex, summary.target_patches,
                   {density, scaled_area(split->carrier->mesh, density) /
                                 static_cast<double>(summary.target_patches)},
@@ -340,7 +204,7 @@ Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOption
     if (context.cancelled())
         return Context::cancelled_error("layout");
     Result<QuadDomain> domain =
-        make_domain(split->complex, std::move(*split->carrier), ground.features.corner);
+        make_domain(split->complex, std::move(*split->carrier), ground.corner);
     if (!domain)
         return domain.error();
     result.domain = std::move(*domain);

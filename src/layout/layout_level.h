@@ -23,6 +23,11 @@ public:
     const std::vector<double>& density() const { return density_; } //!< As SizeField::density.
     const std::vector<Curve>& curves() const { return curves_; }
 
+    //! Makes patches small where curves are short: no wider than the distance between the ends of a
+    //! curve, and growing with the distance from it no faster than a given slope. `unit` is the width
+    //! of patches where the density is one. Cost O(n log n).
+    void refine_at_curves(double unit);
+
     //! Calls act(vertex) for every vertex of a name.
     template <class Act> void for_each_copy(Index name, const Act& act) const
     {

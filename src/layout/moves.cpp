@@ -88,7 +88,8 @@ std::optional<Sketch> sketch_of_merge(const ComplexState& state, const Move& mov
 {
     const PatchComplex& complex = state.complex;
     const Index v = complex.start(move.at);
-    if (!state.valences.is_doublet(v) || complex.is_fixed_vertex(move.at))
+    if (!state.valences.is_inside(v) || !state.valences.is_degenerate(v) ||
+        complex.is_fixed_vertex(move.at))
         return std::nullopt;
     Sketch s;
     s.faces = complex.faces_around(move.at);

@@ -3,6 +3,7 @@
 
 #include "layout/base_complex.h"
 #include "layout/place_sites.h"
+#include "layout/size_field.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,18 +15,6 @@ namespace {
 // Tiles need only be of about one size.
 constexpr int relaxations = 1;
 
-double scaled_area(const LayoutLevel& level)
-{
-    double area = 0.0;
-    for (Index f = 0; f < level.mesh().face_count(); ++f) {
-        const auto& t = level.mesh().triangle(f);
-        const double d =
-            (level.density()[t[0]] + level.density()[t[1]] + level.density()[t[2]]) / 3.0;
-        area += 0.5 * norm(level.mesh().area_vector(f)) * d * d;
-    }
-    return area;
-}
-
 } // namespace
 
 Result<Proxy> Proxy::build(const LayoutLevel& fine, double width, Context& context)
@@ -33,7 +22,7 @@ Result<Proxy> Proxy::build(const LayoutLevel& fine, double width, Context& conte
     // Sites in a triangular grid of this width have each sqrt(3) / 2 of its square.
     SitePlan plan;
     plan.width = width;
-    plan.inner = static_cast<Index>(scaled_area(fine) / (0.866 * width * width));
+    plan.inner = static_cast<Index>(scaled_area(fine.mesh(), fine.density()) / (0.866 * width * width));
     plan.spread = true;
     plan.relaxations = relaxations;
     Tiles tiles(fine.mesh(), fine.density());

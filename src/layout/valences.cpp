@@ -10,6 +10,8 @@ namespace {
 // What one unit of (valence - wanted)^2 costs against the energy of a patch (a square of the wanted
 // size has 1).
 constexpr double valence_weight = 0.35;
+// At the boundary, where the angle cannot be shared out differently, it costs more.
+constexpr double boundary_weight = 0.7;
 // Largest valence a change may make in K: the masks grow fast beyond. In K_tri a vertex has half as
 // many edges again.
 constexpr int max_quad_valence = 6;
@@ -57,18 +59,21 @@ void Valences::move(Index from, Index to)
     count_[from] = 0;
 }
 
+bool Valences::is_degenerate(Index vertex, int by) const
+{
+    const int edges = count_[vertex] + by;
+    if (is_inside(vertex))
+        return sides_ == 4 && edges == 2;
+    const double flat = sides_ == 4 ? flat_corner : 1.5 * flat_corner;
+    return count_[vertex] > 0 && angle_[vertex] > flat * (static_cast<double>(edges) - 1.0);
+}
+
 double Valences::cost(Index vertex, int edges) const
 {
-    const double d = static_cast<double>(edges) - wanted(vertex);
-    if (angle_[vertex] > 0.0) {
-        const double faces = static_cast<double>(edges) - 1.0;
-        const double flat = sides_ == 4 ? flat_corner : 1.5 * flat_corner;
-        if (faces < 1.0 || angle_[vertex] > flat * faces)
-            return degenerate_cost;
-    } else if (sides_ == 4 && edges == 2) {
+    if (is_degenerate(vertex, edges - count_[vertex]))
         return degenerate_cost;
-    }
-    return valence_weight * d * d;
+    const double d = static_cast<double>(edges) - wanted(vertex);
+    return (is_inside(vertex) ? valence_weight : boundary_weight) * d * d;
 }
 
 } // namespace bot2nurbs

@@ -37,11 +37,11 @@ public:
     //! and below the least number there are none.
     bool may_gain(Index vertex, int by = 1) const { return count_[vertex] + by <= most_; }
     bool may_lose(Index vertex) const { return count_[vertex] > least(vertex); }
-    //! Vertices inside K with two edges (`by` counted in): the splines do not exist there.
-    bool is_doublet(Index vertex, int by = 0) const
-    {
-        return sides_ == 4 && count_[vertex] + by == 2 && angle_[vertex] == 0.0;
-    }
+    //! Vertices of K (`by` more edges counted in) that must get another edge or go: those inside
+    //! with two edges, where the splines do not exist, and those of the boundary with a corner that
+    //! is nearly flat or more, where a patch has no tangent plane.
+    bool is_degenerate(Index vertex, int by = 0) const;
+    bool is_inside(Index vertex) const { return angle_[vertex] == 0.0; }
 
 private:
     double wanted(Index vertex) const

@@ -16,8 +16,8 @@ namespace {
 // Corners are seen in the directions to points this many edges away along the crease.
 constexpr std::size_t corner_reach = 3;
 // At the vertex itself a corner turns by this share of its angle, and by this factor more than at
-// the vertices beside it: otherwise it is part of an arc in few edges. From so many degrees on it is
-// a corner whatever is beside it.
+// the vertices beside it: otherwise it is part of an arc in few edges. From so many degrees on it
+// is a corner whatever is beside it.
 constexpr double corner_share = 0.6;
 constexpr double corner_contrast = 1.7;
 constexpr double certain_corner = 60.0;
@@ -30,8 +30,8 @@ constexpr double most_weak = 0.25;
 constexpr double most_spread = 0.15;
 constexpr double most_free_ends = 0.34;
 
-// Vertices of a chain where it turns sharply: by `least_angle` seen over a few edges, and most of it at
-// the vertex itself, not along an arc.
+// Vertices of a chain where it turns sharply: by `least_angle` seen over a few edges, and most of
+// it at the vertex itself, not along an arc.
 void find_corners(const ManifoldMesh& mesh, const std::vector<Index>& chain, double least_angle,
                   std::vector<Index>& corners)
 {
@@ -50,9 +50,9 @@ void find_corners(const ManifoldMesh& mesh, const std::vector<Index>& chain, dou
     for (std::size_t i = first; i < n; ++i) {
         const double before = here[i > 0 ? i - 1 : (closed ? n - 1 : 0)];
         const double after = here[closed ? (i + 1) % n : i + 1];
-        const bool concentrated = here[i] >= certain_corner ||
-                                  (here[i] >= corner_share * least_angle &&
-                                   here[i] >= corner_contrast * std::max(before, after));
+        const bool concentrated =
+            here[i] >= certain_corner || (here[i] >= corner_share * least_angle &&
+                                          here[i] >= corner_contrast * std::max(before, after));
         if (concentrated && turn(i, std::min(corner_reach, closed ? n / 3 : n)) >= least_angle)
             corners.push_back(chain[i]);
     }

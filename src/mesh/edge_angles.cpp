@@ -66,9 +66,8 @@ EdgeAngles measure_edge_angles(const ManifoldMesh& mesh, double dividing, const 
                                    act(h, mesh.twin(h));
                        });
     };
-    for_each_edge([&](Index h, Index t) {
-        angles.face[h] = angles.face[t] = dihedral_angle_deg(mesh, h);
-    });
+    for_each_edge(
+        [&](Index h, Index t) { angles.face[h] = angles.face[t] = dihedral_angle_deg(mesh, h); });
     for_each_edge([&](Index h, Index t) {
         if (angles.face[h] < dividing)
             return;
