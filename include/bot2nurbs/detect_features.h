@@ -38,7 +38,7 @@ struct FeatureOptions {
 struct MeshFeatures {
     std::vector<std::vector<Index>> creases; //!< Vertices in order; the first is repeated at the
                                              //!< end of a closed one.
-    std::vector<Index> corners; //!< Where a crease or the boundary turns; ascending.
+    std::vector<Index> corners;              //!< Where a crease or the boundary turns; ascending.
     Index sharp_edges = 0; //!< Edges whose faces meet at `angle` or more, whatever is around them.
     Index kept_edges = 0;  //!< Edges of `creases`.
     double clear_share = 1.0; //!< See FeatureOptions::least_clear_share.

@@ -55,8 +55,8 @@ std::optional<SurfaceWalk::CurvePlace> SurfaceWalk::beyond(Index vertex, Index e
 {
     if (complex_.is_corner(vertex))
         return std::nullopt;
-    // A vertex is smooth when it has two sharp edges and no run of quads between them is a single one
-    // (see find_fans).
+    // A vertex is smooth when it has two sharp edges and no run of quads between them is a single
+    // one (see find_fans).
     std::optional<CurvePlace> other;
     std::vector<Index> at; // Numbers of the sharp edges, counted around the vertex.
     Index quads = 0;

@@ -65,9 +65,9 @@ Measured measure(const ManifoldMesh& mesh, const std::vector<char>& marks,
     std::vector<Index> name(cut.vertex_count());
     for (Index v = 0; v < cut.vertex_count(); ++v)
         name[v] = result.cut->original(v);
-    result.level = std::make_unique<LayoutLevel>(cut, std::move(name), mesh.vertex_count(),
-                                                 std::move(field.density),
-                                                 trace_curves(mesh, marks, corner));
+    result.level =
+        std::make_unique<LayoutLevel>(cut, std::move(name), mesh.vertex_count(),
+                                      std::move(field.density), trace_curves(mesh, marks, corner));
     return result;
 }
 
@@ -106,8 +106,7 @@ Ground prepare_ground(const ManifoldMesh& source, const LayoutOptions& options,
     if (!options.patches) {
         const double wanted =
             scaled_area(on_source.level->mesh(), on_source.level->density()) / (unit * unit);
-        count = std::clamp(wanted, by_bending,
-                           std::max(by_bending, max_default_patches_genus_3));
+        count = std::clamp(wanted, by_bending, std::max(by_bending, max_default_patches_genus_3));
     }
     summary.target_patches = static_cast<Index>(std::lround(count));
 

@@ -24,8 +24,8 @@ public:
     const std::vector<Curve>& curves() const { return curves_; }
 
     //! Makes patches small where curves are short: no wider than the distance between the ends of a
-    //! curve, and growing with the distance from it no faster than a given slope. `unit` is the width
-    //! of patches where the density is one. Cost O(n log n).
+    //! curve, and growing with the distance from it no faster than a given slope. `unit` is the
+    //! width of patches where the density is one. Cost O(n log n).
     void refine_at_curves(double unit);
 
     //! Calls act(vertex) for every vertex of a name.

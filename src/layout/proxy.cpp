@@ -22,7 +22,8 @@ Result<Proxy> Proxy::build(const LayoutLevel& fine, double width, Context& conte
     // Sites in a triangular grid of this width have each sqrt(3) / 2 of its square.
     SitePlan plan;
     plan.width = width;
-    plan.inner = static_cast<Index>(scaled_area(fine.mesh(), fine.density()) / (0.866 * width * width));
+    plan.inner =
+        static_cast<Index>(scaled_area(fine.mesh(), fine.density()) / (0.866 * width * width));
     plan.spread = true;
     plan.relaxations = relaxations;
     Tiles tiles(fine.mesh(), fine.density());

@@ -22,10 +22,10 @@ constexpr double corner_share = 0.6;
 constexpr double corner_contrast = 1.7;
 constexpr double certain_corner = 60.0;
 // A connected set of creases is clear when weak edges make up at most this share of its length, its
-// sides spread by at most this share of their angle, and at most one in three chains ends freely.
-// On the parts and organic shapes looked at, the clear share of all creases is above 0.9 or below
-// 0.75: creases of parts are sharp, closed and between smooth faces; those of scans and sculpts are
-// ends of ridges that fade.
+// sides spread by at most this share of their angle, and at most one in three chains (or one in
+// all) ends freely. On the parts and organic shapes looked at, the clear share of all creases is
+// above 0.9 or below 0.75: creases of parts are sharp, closed and between smooth faces; those of
+// scans and sculpts are ends of ridges that fade.
 constexpr double most_weak = 0.25;
 constexpr double most_spread = 0.15;
 constexpr double most_free_ends = 0.34;
@@ -90,7 +90,7 @@ double clear_share(const ManifoldMesh& mesh, const CreaseSet& set, const EdgeAng
     for (const Network& n : networks) {
         total += n.length;
         if (n.weak <= most_weak * n.length && n.spread <= most_spread * n.length &&
-            n.free_ends <= most_free_ends * n.chains)
+            n.free_ends <= std::max(1.0, most_free_ends * n.chains))
             clear += n.length;
     }
     return total > 0.0 ? clear / total : 1.0;

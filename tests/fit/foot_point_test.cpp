@@ -217,7 +217,8 @@ TEST(FootPoint, of_a_point_beyond_a_boundary_is_on_the_boundary)
 
 TEST(FootPoint, along_a_curve_stays_on_it_and_passes_smooth_vertices)
 {
-    // The rim of a 2 x 2 disk: corners at its four ends, smooth vertices in the middle of its sides.
+    // The rim of a 2 x 2 disk: corners at its four ends, smooth vertices in the middle of its
+    // sides.
     const fixtures::Domain disk = fixtures::disk_grid(2, 2);
     Target target{disk, [](const Vec3& p) { return p; }, {}, 1.0};
     const SplineSurface surface = fitted(target);
