@@ -37,6 +37,7 @@ PUBLIC_HEADERS = {
     "validate_domain": "domain",
     "domain_samples": "domain",
     "domain_constraints": "domain",
+    "layout_quality": "domain",
     "layout": "layout",
     "spline_network": "spline",
     "fit_network": "fit",

@@ -5,6 +5,7 @@
 #include "bot2nurbs/deviation.h"
 #include "bot2nurbs/fit_network.h"
 #include "bot2nurbs/layout.h"
+#include "bot2nurbs/layout_quality.h"
 #include "bot2nurbs/repair_mesh.h"
 #include "bot2nurbs/spline_network.h"
 
@@ -55,6 +56,7 @@ struct ComponentOutcome {
     FeatureReport features;
     DomainReport domain;
     std::optional<LayoutSummary> layout; //!< Absent when the domain was supplied.
+    LayoutQuality quality;               //!< Of the domain.
     FitSummary fit;                      //!< Distances in units of the input.
     Deviation deviation;                 //!< In units of the input.
     Continuity continuity;               //!< Of the surface as written.

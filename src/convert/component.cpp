@@ -183,8 +183,6 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
     if (Status failed = place_carrier(result.domain.carrier, *unit))
         return *failed;
     outcome.domain = describe(result.domain);
-    if (forms.empty())
-        return result;
 
     stage("charts");
     const Result<std::vector<QuadChart>> charts = compute_charts(*unit, result.domain, context);
@@ -195,6 +193,10 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
             outcome.layout->uniform_maps += chart.level == MapLevel::uniform;
             outcome.layout->exact_maps += chart.level == MapLevel::exact;
         }
+    outcome.quality = measure_layout(result.domain, *charts);
+    if (forms.empty())
+        return result;
+
     stage("samples");
     Result<SurfaceSampleSet> samples = make_samples(*unit, *charts, {}, context);
     if (!samples)

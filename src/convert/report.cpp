@@ -177,6 +177,25 @@ Json brep_json(Index faces, Index edges, Index vertices, const BrepReport& b)
     return j;
 }
 
+Json spread_json(const Spread& s)
+{
+    return {{"least", s.least},
+            {"median", s.median},
+            {"most", s.most},
+            {"least_at", index_or_null(s.least_at)},
+            {"most_at", index_or_null(s.most_at)}};
+}
+
+Json quality_json(const LayoutQuality& q)
+{
+    return {{"stretch", spread_json(q.stretch)},
+            {"angle", spread_json(q.angle)},
+            {"area_ratio", spread_json(q.area_ratio)},
+            {"aspect", spread_json(q.aspect)},
+            {"size", spread_json(q.size)},
+            {"straightness", spread_json(q.straightness)}};
+}
+
 Json component_json(const ComponentOutcome& c, const std::string& unit)
 {
     Json j;
@@ -188,6 +207,7 @@ Json component_json(const ComponentOutcome& c, const std::string& unit)
     j["domain"] = domain_json(c.domain);
     if (c.layout)
         j["layout"] = layout_json(*c.layout);
+    j["layout_quality"] = quality_json(c.quality);
     if (c.brep_faces > 0) {
         j["fit"] = fit_json(c.fit);
         j["fit"]["history"] = rounds_json(c.fit);

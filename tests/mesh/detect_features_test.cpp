@@ -107,8 +107,9 @@ TEST(DetectFeatures, do_not_depend_on_scale_and_place)
     const ManifoldMesh mesh = noisy(cube(6), 0.01, 5);
     const MeshFeatures first = detect(mesh);
     for (const double scale : {1e-6, 1e6}) {
-        const MeshFeatures other =
-            detect(moved(mesh, [scale](const Vec3& p) { return scale * p + Vec3{scale, 0.0, 0.0}; }));
+        const MeshFeatures other = detect(moved(mesh, [scale](const Vec3& p) {
+            return scale * p + Vec3{scale, 0.0, 0.0};
+        }));
         EXPECT_EQ(other.creases, first.creases);
         EXPECT_EQ(other.corners, first.corners);
     }
