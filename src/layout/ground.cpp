@@ -115,9 +115,12 @@ Ground prepare_ground(const ManifoldMesh& source, const LayoutOptions& options,
         double& least = limit[on_source.level->name(v)];
         least = std::min(least, carrier_resolution * unit / on_source.level->density()[v]);
     }
-    ground.carrier = refine_carrier(
-        source, limit, max_refinement_floor + max_refinement_factor * source.face_count(),
-        ground.marks);
+    PlannedCarrier planned = refine_carrier(
+        source,
+        {std::move(limit), max_refinement_floor + max_refinement_factor * source.face_count(),
+         std::move(ground.marks), {}});
+    ground.carrier = std::move(planned.carrier);
+    ground.marks = std::move(planned.marks);
     ground.corner.resize(ground.carrier.mesh.vertex_count(), 0);
     if (ground.carrier.refined)
         summary.notes.push_back("edges split where the mesh is coarse for its patches: " +
