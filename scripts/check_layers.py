@@ -42,6 +42,7 @@ PUBLIC_HEADERS = {
     "spline_network": "spline",
     "fit_network": "fit",
     "deviation": "brep",
+    "hausdorff_bound": "brep",
     "brep": "brep",
     "read_mesh": "io",
     "write_brep": "io",

@@ -90,7 +90,7 @@ class Conversion(CliTest):
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertEqual(run.stdout, "")
         self.assertEqual(sorted(os.listdir(self.folder)), ["a.3dm", "a.brep", "a.step", "a.stp"])
-        for word in ("patches", "extraordinary", "rms", "max", "joins", "solid     yes", "a.3dm"):
+        for word in ("patches", "extraordinary", "rms", "max", "bound", "joins", "solid     yes", "a.3dm"):
             self.assertIn(word, run.stderr)
         self.assertNotIn("\033", run.stderr)
         self.assertNotIn("\r", run.stderr)
@@ -107,6 +107,7 @@ class Conversion(CliTest):
         self.assertEqual(report["continuity"]["max_gap"], 0)
         self.assertLessEqual(report["continuity"]["max_g1_angle_deg"], 1e-8)
         self.assertLess(report["deviation"]["rms_relative"], 5e-3)
+        self.assertLessEqual(report["deviation"]["max"], report["deviation"]["upper_bound"])
         self.assertEqual(report["outputs"][0]["bytes"], os.path.getsize(self.folder / "a.3dm"))
         names = [stage["name"] for stage in report["stages"]]
         self.assertEqual(names[:3], ["read", "check", "repair"])
