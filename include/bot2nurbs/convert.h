@@ -3,6 +3,7 @@
 
 #include "bot2nurbs/check_mesh.h"
 #include "bot2nurbs/context.h"
+#include "bot2nurbs/detect_features.h"
 #include "bot2nurbs/fit_network.h"
 #include "bot2nurbs/report.h"
 #include "bot2nurbs/spline_network.h"
@@ -15,6 +16,21 @@
 #include <vector>
 
 namespace bot2nurbs {
+
+//! Which sharp edges of the input stay sharp.
+enum class FeatureMode {
+    automatic, //!< Creases, where they are the edges of a part: see
+               //!< FeatureOptions::least_clear_share.
+    off,       //!< None: all are rounded.
+    all,       //!< All creases of the angle asked for.
+};
+
+//! Whether the result must be closed.
+enum class Closure {
+    as_input, //!< Solids of closed components, open surfaces of open ones.
+    open,     //!< The same, and that some are open needs no warning.
+    solid,    //!< Open components are refused.
+};
 
 //! What convert() reads, makes and writes. Paths are as the operating system takes them.
 struct ConvertOptions {
@@ -31,6 +47,11 @@ struct ConvertOptions {
     std::optional<KnotForm> knots;
     FitOptions fit;
 
+    FeatureMode features = FeatureMode::automatic;
+    //! How creases are found. With FeatureMode::all its least_clear_share counts as 0.
+    FeatureOptions feature_options;
+    Closure closure = Closure::as_input;
+
     bool repair = true;  //!< Make harmless repairs; false: reject an input that needs any.
     bool strict = false; //!< Reject self-intersecting input instead of warning.
 
@@ -39,6 +60,12 @@ struct ConvertOptions {
     std::optional<std::string> domain_in;
     //! Where to write the domains of all components.
     std::optional<std::string> domain_out;
+    //! Constraint file that the automatic layout keeps to; components that it does not name are
+    //! laid out freely.
+    std::optional<std::string> constraints;
+    //! Where to write the constraints that the layouts kept to and the vertices they chose, as
+    //! constraints.
+    std::optional<std::string> constraints_out;
     //! Where to write a tessellation (binary PLY) for inspection: per vertex the normal, patch,
     //! parameters, signed distance to the source, and at patch corners the valence.
     std::optional<std::string> tessellation;
@@ -62,7 +89,8 @@ struct ConvertOptions {
 //! 2. the same bytes for any thread count;
 //! 3. coordinates come out in the place and units they came in.
 //! Cancel through the context. Errors: those of the stages; open_mesh, self_intersecting (with
-//! strict), stale_domain, bad_option, cannot_write.
+//! strict), stale_domain, constraint_conflict,
+//! bad_option, cannot_write.
 Result<ConvertReport> convert(const ConvertOptions& options, Context& context);
 
 //! What the first steps of convert() say of an input.

@@ -3,6 +3,7 @@
 
 #include "bot2nurbs/domain_file.h"
 #include "convert/component.h"
+#include "convert/constraints_input.h"
 #include "convert/domain_input.h"
 #include "convert/input.h"
 #include "convert/tessellation.h"
@@ -106,12 +107,6 @@ void add_input_warnings(const PreparedInput& input, ConvertReport& report)
                          input.found.self_intersecting_pairs, f, g),
              f});
     }
-    if (input.found.sharp_edges > 0)
-        report.warnings.push_back(
-            {"sharp_edges",
-             fmt::format("{} edges turn by more than 40 degrees: they are rounded, not kept",
-                         input.found.sharp_edges),
-             invalid_index});
     for (std::size_t c = 0; c < input.mesh.components.size(); ++c)
         if (input.mesh.components[c].cavity)
             report.warnings.push_back(
@@ -120,6 +115,38 @@ void add_input_warnings(const PreparedInput& input, ConvertReport& report)
                              "as a solid of its own",
                              c + 1, input.mesh.components[c].surrounded_by + 1),
                  input.mesh.components[c].source_face.front()});
+}
+
+//! Warnings about what became of the shape: open surfaces, creases that were rounded.
+void add_outcome_warnings(const ConvertOptions& options, ConvertReport& report)
+{
+    Index loops = 0, open = 0, smoothed = 0, vertex = invalid_index;
+    for (const ComponentOutcome& c : report.components) {
+        loops += c.boundary_loops;
+        open += c.boundary_loops > 0;
+        smoothed += static_cast<Index>(c.features.smoothed.size());
+        if (vertex == invalid_index && !c.features.smoothed.empty())
+            vertex = c.features.smoothed[0][0];
+    }
+    if (open > 0 && options.closure == Closure::as_input)
+        report.warnings.push_back(
+            {"open",
+             fmt::format(
+                 "{} of {} components are open, with {} boundary loops in all: the result is "
+                 "no solid there. --open accepts this, --solid refuses it",
+                 open, report.components.size(), loops),
+             invalid_index});
+    if (smoothed > 0)
+        report.warnings.push_back(
+            {"sharp_edges",
+             fmt::format(
+                 "{} edges turn by {:g} degrees or more but are rounded, not kept (first: at "
+                 "vertex {}). {}",
+                 smoothed, options.feature_options.angle, vertex,
+                 options.features == FeatureMode::all
+                     ? "They are too short or too rough to be creases"
+                     : "--features DEGREES keeps creases of that angle"),
+             vertex});
 }
 
 struct PendingFile {
@@ -170,6 +197,12 @@ Result<std::vector<PendingFile>> make_files(const ConvertOptions& options, const
             return bytes.error();
         add(*options.tessellation, "ply", std::move(*bytes));
     }
+    if (options.constraints_out) {
+        std::vector<DomainConstraints> constraints;
+        for (ConvertedComponent& c : components)
+            constraints.push_back(std::move(c.constraints));
+        add(*options.constraints_out, "constraints", constraint_list_to_json(constraints));
+    }
     if (options.domain_out) {
         std::vector<QuadDomain> domains;
         for (ConvertedComponent& c : components)
@@ -185,7 +218,7 @@ std::optional<Error> ConvertOptions::check() const
 {
     if (input.empty())
         return bad_option("no input file is named");
-    if (outputs.empty() && !domain_out && !tessellation)
+    if (outputs.empty() && !domain_out && !constraints_out && !tessellation)
         return bad_option("no output file is named");
     for (const std::string& path : outputs) {
         const std::optional<Format> format = format_of(path);
@@ -201,7 +234,13 @@ std::optional<Error> ConvertOptions::check() const
             fmt::format("--patches {} is too few: at least {}", *patches, fewest_patches));
     if (patches && domain_in)
         return bad_option("--patches steers the automatic layout: it contradicts --domain-in");
+    if (domain_in && (constraints || constraints_out))
+        return bad_option(
+            fmt::format("{} is about the automatic layout: it contradicts --domain-in",
+                        constraints ? "--constraints" : "--constraints-out"));
     if (std::optional<Error> failed = fit.check())
+        return failed;
+    if (std::optional<Error> failed = feature_options.check())
         return failed;
     if (Status failed = write.check())
         return failed;
@@ -209,15 +248,19 @@ std::optional<Error> ConvertOptions::check() const
     std::vector<std::string> paths = outputs;
     if (domain_out)
         paths.push_back(*domain_out);
+    if (constraints_out)
+        paths.push_back(*constraints_out);
     if (tessellation)
         paths.push_back(*tessellation);
     for (std::size_t i = 0; i < paths.size(); ++i) {
         if (std::find(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), paths[i]) !=
             paths.begin() + static_cast<std::ptrdiff_t>(i))
             return bad_option(fmt::format("{} is to be written twice", paths[i]));
-        std::error_code unknown;
-        if (fs::equivalent(paths[i], input, unknown))
-            return bad_option(fmt::format("{} is the input: it would be overwritten", paths[i]));
+        for (const auto& read : {std::optional<std::string>(input), domain_in, constraints}) {
+            std::error_code unknown;
+            if (read && fs::equivalent(paths[i], *read, unknown))
+                return bad_option(fmt::format("{} is read: it would be overwritten", paths[i]));
+        }
         if (Status failed = check_folder(paths[i]))
             return failed;
     }
@@ -240,7 +283,6 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
                    : !input->units.empty()      ? input->units
                                                 : "mm";
     report.diagonal = mesh.box.diagonal();
-    report.sharp_edges = input->found.sharp_edges;
     add_input_warnings(*input, report);
 
     std::vector<QuadDomain> supplied;
@@ -249,6 +291,14 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
         if (!domains)
             return domains.error();
         supplied = std::move(*domains);
+    }
+
+    std::vector<DomainConstraints> constraints(mesh.components.size());
+    if (options.constraints) {
+        Result<std::vector<DomainConstraints>> read = read_constraints(*options.constraints, mesh);
+        if (!read)
+            return read.error();
+        constraints = std::move(*read);
     }
 
     // The knot forms that the outputs need, each made once.
@@ -264,12 +314,13 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
     std::vector<ConvertedComponent> components;
     const std::size_t count = mesh.components.size();
     for (std::size_t c = 0; c < count; ++c) {
-        std::optional<QuadDomain> domain;
+        DomainWishes wishes;
         if (options.domain_in)
-            domain = std::move(supplied[c]);
+            wishes.supplied = std::move(supplied[c]);
+        wishes.constraints = std::move(constraints[c]);
         const std::string suffix = count > 1 ? fmt::format(" {}/{}", c + 1, count) : "";
         Result<ConvertedComponent> converted = convert_component(
-            mesh.components[c], std::move(domain), options, forms, suffix, context);
+            mesh.components[c], std::move(wishes), options, forms, suffix, context);
         if (!converted) {
             Error error = converted.error();
             if (count > 1 && error.code != ErrorCode::cancelled)
@@ -286,6 +337,7 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
         return files.error();
     for (const ConvertedComponent& c : components)
         report.components.push_back(c.outcome);
+    add_outcome_warnings(options, report);
     if (context.cancelled())
         return Context::cancelled_error("write");
     for (const PendingFile& pending : *files) {

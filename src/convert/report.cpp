@@ -67,6 +67,8 @@ Json options_json(const ConvertOptions& o)
     j["strict"] = o.strict;
     j["domain_in"] = o.domain_in ? Json(*o.domain_in) : Json(nullptr);
     j["domain_out"] = o.domain_out ? Json(*o.domain_out) : Json(nullptr);
+    j["constraints"] = o.constraints ? Json(*o.constraints) : Json(nullptr);
+    j["constraints_out"] = o.constraints_out ? Json(*o.constraints_out) : Json(nullptr);
     j["units"] = o.write.units;
     j["archive_version"] = o.write.archive_version;
     j["step_schema"] = o.write.step_schema == StepSchema::ap242 ? "AP242" : "AP214";
@@ -84,20 +86,52 @@ Json side_json(const DistanceStatistics& s)
     return {{"max", s.max}, {"rms", s.rms}, {"samples", s.samples}, {"worst", point_json(s.worst)}};
 }
 
-//! `diagonal`: what relative distances are relative to.
-Json deviation_json(const Deviation& d, double diagonal, const std::string& unit)
+const char* name_of(HausdorffTermination termination)
+{
+    switch (termination) {
+    case HausdorffTermination::gap_reached: return "gap_reached";
+    case HausdorffTermination::decided: return "decided";
+    case HausdorffTermination::cell_limit: return "cell_limit";
+    }
+    return "";
+}
+
+//! `diagonal`: what relative distances are relative to. `bounds`: of the largest distance.
+Json deviation_json(const Deviation& d, const std::optional<DistanceBounds>& bounds,
+                    double diagonal, const std::string& unit)
 {
     Json j;
     j["unit"] = unit;
     j["diagonal"] = diagonal;
-    j["kind"] = "sampled";
+    j["kind"] = bounds ? "proven" : "sampled";
     j["max"] = d.max();
     j["rms"] = d.rms();
     j["max_relative"] = diagonal > 0.0 ? d.max() / diagonal : 0.0;
     j["rms_relative"] = diagonal > 0.0 ? d.rms() / diagonal : 0.0;
+    if (bounds) {
+        j["lower_bound"] = bounds->lower;
+        j["upper_bound"] = bounds->upper;
+        j["upper_bound_relative"] = diagonal > 0.0 ? bounds->upper / diagonal : 0.0;
+    }
     j["source_to_surface"] = side_json(d.source_to_surface);
     j["surface_to_source"] = side_json(d.surface_to_source);
     return j;
+}
+
+//! What is known of one component only: where it is worst, and what the bound took.
+void add_bound(Json& deviation, const HausdorffBound& bound)
+{
+    const FarPlace& worst = bound.worse_side().worst;
+    deviation["worst"] = {
+        {"side", &bound.worse_side() == &bound.surface_to_source ? "surface" : "source"},
+        {"point", point_json(worst.point)},
+        {"distance", worst.distance},
+        {"patch", index_or_null(worst.surface.quad)},
+        {"u", worst.surface.u},
+        {"v", worst.surface.v}};
+    deviation["bound"] = {{"termination", name_of(bound.termination)},
+                          {"cells", bound.cells},
+                          {"queries", bound.queries}};
 }
 
 Json continuity_json(const Continuity& c)
@@ -177,6 +211,25 @@ Json brep_json(Index faces, Index edges, Index vertices, const BrepReport& b)
     return j;
 }
 
+Json spread_json(const Spread& s)
+{
+    return {{"least", s.least},
+            {"median", s.median},
+            {"most", s.most},
+            {"least_at", index_or_null(s.least_at)},
+            {"most_at", index_or_null(s.most_at)}};
+}
+
+Json quality_json(const LayoutQuality& q)
+{
+    return {{"stretch", spread_json(q.stretch)},
+            {"angle", spread_json(q.angle)},
+            {"area_ratio", spread_json(q.area_ratio)},
+            {"aspect", spread_json(q.aspect)},
+            {"size", spread_json(q.size)},
+            {"straightness", spread_json(q.straightness)}};
+}
+
 Json component_json(const ComponentOutcome& c, const std::string& unit)
 {
     Json j;
@@ -188,11 +241,17 @@ Json component_json(const ComponentOutcome& c, const std::string& unit)
     j["domain"] = domain_json(c.domain);
     if (c.layout)
         j["layout"] = layout_json(*c.layout);
+    j["layout_quality"] = quality_json(c.quality);
     if (c.brep_faces > 0) {
         j["fit"] = fit_json(c.fit);
         j["fit"]["history"] = rounds_json(c.fit);
-        j["deviation"] = deviation_json(c.deviation, c.diagonal, unit);
+        std::optional<DistanceBounds> bounds;
+        if (c.bound)
+            bounds = DistanceBounds{c.bound->lower(), c.bound->upper()};
+        j["deviation"] = deviation_json(c.deviation, bounds, c.diagonal, unit);
         j["deviation"]["worst_patch"] = index_or_null(c.deviation.worst_patch);
+        if (c.bound)
+            add_bound(j["deviation"], *c.bound);
         j["continuity"] = continuity_json(c.continuity);
         j["brep"] = brep_json(c.brep_faces, c.brep_edges, c.brep_vertices, c.brep);
     }
@@ -282,6 +341,27 @@ Json all_breps(const ConvertReport& report)
     return brep_json(faces, edges, vertices, sum);
 }
 
+// Sharp edges of all components. Of those smoothed over the first ones are listed.
+Json features_json(const std::vector<ComponentOutcome>& components)
+{
+    constexpr std::size_t most_listed = 1000;
+    Index detected = 0, kept = 0, creases = 0, corners = 0;
+    std::size_t smoothed = 0;
+    Json listed = Json::array();
+    for (const ComponentOutcome& c : components) {
+        detected += c.features.detected_edges;
+        kept += c.features.kept_edges;
+        creases += c.features.creases;
+        corners += c.features.corners;
+        smoothed += c.features.smoothed.size();
+        for (const auto& edge : c.features.smoothed)
+            if (listed.size() < most_listed)
+                listed.push_back(edge);
+    }
+    return {{"detected_edges", detected}, {"kept_edges", kept}, {"smoothed_edges", smoothed},
+            {"creases", creases},         {"corners", corners}, {"smoothed", listed}};
+}
+
 Continuity all_joins(const std::vector<ComponentOutcome>& components)
 {
     Continuity worst;
@@ -311,6 +391,18 @@ Deviation ConvertReport::deviation() const
     return all;
 }
 
+std::optional<DistanceBounds> ConvertReport::distance() const
+{
+    DistanceBounds all;
+    for (const ComponentOutcome& c : components) {
+        if (!c.bound)
+            return std::nullopt;
+        all.lower = std::max(all.lower, c.bound->lower());
+        all.upper = std::max(all.upper, c.bound->upper());
+    }
+    return components.empty() ? std::nullopt : std::optional(all);
+}
+
 bool ConvertReport::valid() const
 {
     return !components.empty() &&
@@ -336,15 +428,14 @@ std::string report_to_json(const ConvertOptions& options, const ConvertReport& r
     const bool fitted = !report.components.empty() && report.components.front().brep_faces > 0;
     if (fitted) {
         j["fit"] = fit_json(all_fits(report.components));
-        j["deviation"] = deviation_json(report.deviation(), report.diagonal, report.units);
+        j["deviation"] =
+            deviation_json(report.deviation(), report.distance(), report.diagonal, report.units);
         j["continuity"] = continuity_json(all_joins(report.components));
         j["brep"] = all_breps(report);
         // No test of our own decides this yet; the report must not claim more.
         j["embedded"] = "undecided";
     }
-    j["features"] = {{"detected_edges", report.sharp_edges},
-                     {"kept_edges", 0},
-                     {"smoothed_edges", report.sharp_edges}};
+    j["features"] = features_json(report.components);
     j["components"] = Json::array();
     for (const ComponentOutcome& c : report.components)
         j["components"].push_back(component_json(c, report.units));

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "bot2nurbs/layout.h"
 
-#include "domain/domain_paths.h"
 #include "layout/base_complex.h"
+#include "layout/ground.h"
 #include "layout/improve.h"
+#include "layout/make_domain.h"
 #include "layout/pair_triangles.h"
-#include "layout/refine_carrier.h"
+#include "layout/place_sites.h"
+#include "layout/proxy.h"
 #include "layout/size_field.h"
 #include "layout/split_in_quads.h"
+#include "layout/uncut.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,122 +19,220 @@ namespace bot2nurbs {
 
 namespace {
 
-// The default number of patches is the shape's bending, k1^2 + k2^2 integrated, between bounds: 25
-// on any sphere, 108 on a torus with radii 1 and 0.4. The upper bound keeps fits fast and B-Reps
-// easy to handle; a tolerance or --patches asks for more.
-constexpr double min_default_patches = 24.0;
-constexpr double max_default_patches = 150.0;
-constexpr double max_default_patches_genus_3 = 300.0;
-constexpr double patches_per_handle = 16.0;
-// Curvature is measured at this fraction of the box diagonal.
-constexpr double curvature_scale = 0.015;
 // Collapsing quads makes the layout regular; this many more are made than wanted, to collapse.
 constexpr double surplus = 1.2;
-// Carrier edges are at most this part of the width of a patch, so that a patch has enough faces for
-// a smooth map: about forty.
-constexpr double carrier_resolution = 0.3;
+// Edges of a coarse mesh that stands for the carrier are this part of a patch's width; it is made
+// where it has so many times fewer faces.
+constexpr double proxy_resolution = 0.2;
+constexpr double proxy_saving = 2.5;
 // Rounds of Lloyd's relaxation; more move sites by less than a mesh edge.
 constexpr int relaxation_rounds = 8;
-// Refining a carrier adds at most this many vertices per face, plus the constant: a sliver whose
-// area is nothing beside its length would ask for any number.
-constexpr std::size_t max_refinement_factor = 4;
-constexpr std::size_t max_refinement_floor = 20000;
-
-double surface_area(const ManifoldMesh& mesh)
+// How many sites to place inside so that about `patches` quads come out.
+Index inner_sites(const LayoutLevel& level, double width, double patches)
 {
-    double area = 0.0;
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        area += 0.5 * norm(mesh.area_vector(f));
-    return area;
-}
-
-// Area in the metric scaled by a density per vertex.
-double scaled_area(const ManifoldMesh& mesh, const std::vector<double>& density)
-{
-    double area = 0.0;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const auto& t = mesh.triangle(f);
-        const double d = (density[t[0]] + density[t[1]] + density[t[2]]) / 3.0;
-        area += 0.5 * norm(mesh.area_vector(f)) * d * d;
+    // On a surface with f quads and b boundary edges, v = f + b / 2 + Euler characteristic; over
+    // all regions of the level. Pieces of curves are about as long as patches are wide.
+    double border = 0.0;
+    for (const Curve& c : level.curves()) {
+        const std::vector<Vec3> p = level.points(c);
+        double length = 0.0;
+        for (std::size_t i = 1; i < p.size(); ++i)
+            length += norm(p[i] - p[i - 1]);
+        border += std::max(1.0, length / width);
     }
-    return area;
+    return static_cast<Index>(std::max(0.0, patches + euler_characteristic(level.mesh()) - border));
 }
 
-Index default_patches(double bending, int genus)
+SizeMetric metric_of(const LayoutLevel& level, double width)
 {
-    double limit = genus >= 3 ? max_default_patches_genus_3 : max_default_patches;
-    limit = std::max(limit, patches_per_handle * genus);
-    const double least = std::max(min_default_patches, 0.5 * patches_per_handle * genus);
-    return static_cast<Index>(std::lround(std::clamp(bending, least, limit)));
+    return {level.density(), width * width};
 }
 
-// Voronoi sites: enough for the patches wanted, evenly spread, then whatever the conditions ask.
-void place_sites(Tiles& tiles, Index count, LayoutSummary& summary, const Context& context)
+// What the constraints ask of a complex on a level.
+void bind(PatchComplex& complex, const LayoutLevel& level, const CarrierConstraints& constraints)
 {
-    // The first site is the vertex farthest from the middle: it does not depend on numbering.
-    const ManifoldMesh& mesh = tiles.mesh();
-    const Vec3 center = mesh.box().center();
-    Index first = 0;
-    for (Index v = 1; v < mesh.vertex_count(); ++v)
-        if (norm_squared(mesh.position(v) - center) > norm_squared(mesh.position(first) - center))
-            first = v;
-    tiles.grow({first});
-    tiles.add_farthest(std::min(count, mesh.vertex_count()));
-    for (int round = 0; round < relaxation_rounds && !context.cancelled(); ++round)
-        tiles.relax();
-    const std::size_t before = tiles.sites().size();
-    while (!context.cancelled()) {
-        const std::vector<Index> missing = tiles.violations();
-        if (missing.empty())
-            break;
-        tiles.add(missing);
-    }
+    for (const Index s : constraints.sites)
+        level.for_each_copy(s, [&complex](Index v) { complex.pin(v); });
+    for (const auto& [s, quads] : constraints.valences)
+        if (!level.on_curve(s))
+            complex.want(level.any_copy(s), quads);
+    for (const auto& [a, b] : level.apart)
+        level.for_each_copy(a, [&, b = b](Index va) {
+            level.for_each_copy(b, [&](Index vb) { complex.keep_apart(va, vb); });
+        });
+}
+
+// K_tri on a level.
+Result<PatchComplex> make_triangles(const LayoutLevel& level, const Ground& ground, Index target,
+                                    LayoutSummary& summary, Context& context)
+{
+    SitePlan plan;
+    plan.width = ground.width / std::sqrt(surplus);
+    plan.inner = inner_sites(level, plan.width, surplus * static_cast<double>(target));
+    plan.relaxations = relaxation_rounds;
+    plan.keep_apart = true;
+    plan.even_regions = true;
+    Tiles tiles(level.mesh(), level.density());
+    summary.sites_added = place_sites(level, plan, tiles, context);
     summary.sites = static_cast<Index>(tiles.sites().size());
-    summary.sites_added = static_cast<Index>(tiles.sites().size() - before);
+    if (context.cancelled())
+        return Context::cancelled_error("layout");
+    Result<PatchComplex> complex = build_base_complex(tiles, context);
+    if (!complex)
+        return complex;
+    bind(*complex, level, ground.constraints);
+    straighten_triangles(*complex, context);
+    improve_triangles(*complex, metric_of(level, ground.width), context);
+    if (context.cancelled())
+        return Context::cancelled_error("layout");
+    return complex;
 }
 
-Result<QuadDomain> make_domain(const PatchComplex& complex, CarrierMesh carrier)
+// Makes two vertices neighbours by turning the edge between two triangles that have them as
+// opposite corners. False when there is no such edge.
+bool join_by_flip(PatchComplex& complex, Index a, Index b)
 {
-    QuadDomain domain;
-    std::vector<Index> number(carrier.mesh.vertex_count(), invalid_index);
-    std::vector<std::array<Index, 4>> quads;
-    for (Index f = 0; f < complex.faces().size(); ++f) {
-        const std::vector<Index> corners = complex.corners(f);
-        std::array<Index, 4> quad{};
-        for (std::size_t k = 0; k < 4; ++k) {
-            if (number[corners[k]] == invalid_index) {
-                number[corners[k]] = static_cast<Index>(domain.vertices.size());
-                domain.vertices.push_back(corners[k]);
-            }
-            quad[k] = number[corners[k]];
-        }
-        quads.push_back(quad);
-    }
-    Result<QuadComplex> built =
-        QuadComplex::build(static_cast<Index>(domain.vertices.size()), std::move(quads));
-    if (!built)
-        return built.error();
-    domain.complex = std::move(*built);
-    domain.edges.resize(domain.complex.edge_count());
-    for (Index f = 0; f < complex.faces().size(); ++f)
-        for (Index s = 0; s < 4; ++s) {
-            const Index h = 4 * f + s, e = domain.complex.edge(h);
-            if (domain.complex.halfedge_of_edge(e) != h)
+    OverlayBuilder builder(complex.mesh());
+    for (Index p = 0; p < complex.paths().size(); ++p) {
+        const PatchComplex::Path& path = complex.paths()[p];
+        if (!path.alive || complex.is_fixed(p))
+            continue;
+        const std::vector<Index> faces{path.left, path.right};
+        const auto border = complex.border(faces);
+        if (!border || border->size() != 4)
+            continue;
+        for (Index i = 0; i < 2; ++i) {
+            if (std::minmax(complex.start((*border)[i]), complex.start((*border)[i + 2])) !=
+                    std::minmax(a, b) ||
+                std::minmax(complex.start((*border)[i + 1]),
+                            complex.start((*border)[(i + 3) % 4])) !=
+                    std::minmax(path.geometry.a, path.geometry.b))
                 continue;
-            const PatchComplex::Side& side = complex.faces()[f].sides[s];
-            const PathSide walk{&complex.paths()[side.path].geometry, side.reversed};
-            SurfacePath path;
-            path.a = walk.start();
-            path.b = walk.end();
-            for (std::size_t i = 0; i < walk.node_count(); ++i)
-                path.nodes.push_back(walk.node(carrier.mesh, i));
-            domain.edges[e].a = number[path.a];
-            domain.edges[e].b = number[path.b];
-            domain.edges[e].path = path_points(carrier.mesh, path);
+            auto change = complex.plan(faces, *border, {{i, i + 2}}, builder);
+            if (change)
+                complex.apply(std::move(*change));
+            return change.has_value();
         }
-    domain.carrier = std::move(carrier);
-    domain.origin = "eck";
-    return domain;
+    }
+    return false;
+}
+
+// The pairings asked for, in vertices of the level; edges of those that are to be joined are made
+// where they are missing.
+Result<PairingWishes> pairing_wishes(PatchComplex& triangles, const LayoutLevel& level,
+                                     const CarrierConstraints& constraints)
+{
+    PairingWishes wishes;
+    for (const auto& pair : constraints.paired) {
+        bool found = false;
+        for (const bool flip : {false, true})
+            level.for_each_copy(pair.a, [&](Index a) {
+                level.for_each_copy(pair.b, [&](Index b) {
+                    if (found ||
+                        (!triangles.path_between(a, b) && !(flip && join_by_flip(triangles, a, b))))
+                        return;
+                    found = !triangles.is_fixed(*triangles.path_between(a, b));
+                    if (found)
+                        wishes.joined.emplace_back(a, b);
+                });
+            });
+        if (!found)
+            return Error{
+                ErrorCode::constraint_conflict,
+                "pairing " + std::to_string(pair.number) +
+                    ": its sites are joined by no edge of the triangles, nor are they opposite "
+                    "corners of two of them: they are too far apart, or a path or feature "
+                    "lies between",
+                pair.number};
+    }
+    for (const auto& pair : constraints.unpaired)
+        level.for_each_copy(pair.a, [&](Index a) {
+            level.for_each_copy(pair.b, [&](Index b) { wishes.parted.emplace_back(a, b); });
+        });
+    triangles.compact();
+    return wishes;
+}
+
+// The complex of quads on the carrier and what is needed to make a domain of it.
+struct Quads {
+    std::unique_ptr<CarrierMesh> refined; // Where paths had to be cut in; else the ground's.
+    PatchComplex complex;
+};
+
+Result<Quads> make_quads(const ManifoldMesh& source, const LayoutOptions& options,
+                         const Ground& ground, const Proxy* proxy, LayoutSummary& summary,
+                         Context& context)
+{
+    const ManifoldMesh& carrier = ground.carrier->mesh;
+    const LayoutLevel& level = proxy ? proxy->level() : *ground.level;
+    Result<PatchComplex> triangles =
+        make_triangles(level, ground, summary.target_patches, summary, context);
+    if (!triangles)
+        return triangles.error();
+    const auto on_carrier = [&](const PatchComplex& made) -> Result<PatchComplex> {
+        if (!proxy)
+            return uncut(made, *ground.cut, carrier, ground.marks);
+        Result<PatchComplex> lifted = proxy->lift(made, context);
+        if (!lifted)
+            return lifted;
+        return uncut(*lifted, *ground.cut, carrier, ground.marks);
+    };
+    const Result<PairingWishes> wishes = pairing_wishes(*triangles, level, ground.constraints);
+    if (!wishes)
+        return wishes.error();
+    if (!options.split_triangles) {
+        PatchComplex quads = *triangles;
+        const Result<bool> paired = pair_triangles(quads, *wishes, context);
+        if (!paired)
+            return paired.error();
+        if (*paired) {
+            improve_quads(quads, summary.target_patches, metric_of(level, ground.width), context);
+            if (context.cancelled())
+                return Context::cancelled_error("layout");
+            Result<PatchComplex> lifted = on_carrier(quads);
+            if (!lifted)
+                return lifted.error();
+            if (is_simple(*lifted))
+                return Quads{nullptr, std::move(*lifted)};
+        }
+    }
+    if (!ground.constraints.paired.empty() || !ground.constraints.unpaired.empty())
+        return Error{ErrorCode::constraint_conflict,
+                     "the pairings asked for leave triangles that cannot be paired", invalid_index};
+    summary.subdivided = true;
+    summary.notes.push_back("triangles split in three quads each");
+    Result<PatchComplex> whole = on_carrier(*triangles);
+    if (!whole)
+        return whole.error();
+    Result<SplitComplex> split = split_in_quads(*whole, source, *ground.carrier, context);
+    if (!split)
+        return split.error();
+    if (!ground.constraints.binds()) {
+        const std::vector<double> density(split->carrier->mesh.vertex_count(), 1.0);
+        improve_quads(split->complex, summary.target_patches,
+                      {density, scaled_area(split->carrier->mesh, density) /
+                                    static_cast<double>(summary.target_patches)},
+                      context);
+    }
+    if (context.cancelled())
+        return Context::cancelled_error("layout");
+    if (!is_simple(split->complex))
+        return Error{ErrorCode::layout_failed, "two edges of the layout join the same vertices",
+                     invalid_index};
+    return Quads{std::move(split->carrier), std::move(split->complex)};
+}
+
+// A coarse mesh in place of the ground's, where that is much finer than patches need.
+Result<std::optional<Proxy>> make_proxy(const Ground& ground, Index patches, Context& context)
+{
+    const double cells =
+        static_cast<double>(patches) * 4.0 / (1.732 * proxy_resolution * proxy_resolution);
+    if (!(static_cast<double>(ground.carrier->mesh.face_count()) > proxy_saving * cells))
+        return std::optional<Proxy>();
+    Result<Proxy> proxy = Proxy::build(*ground.level, proxy_resolution * ground.width, context);
+    if (!proxy)
+        return proxy.error();
+    return std::optional<Proxy>(std::move(*proxy));
 }
 
 } // namespace
@@ -139,78 +240,36 @@ Result<QuadDomain> make_domain(const PatchComplex& complex, CarrierMesh carrier)
 Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOptions& options,
                                   Context& context)
 {
-    if (!source.closed())
-        return Error{ErrorCode::open_mesh, "the automatic layout needs a closed mesh",
-                     invalid_index};
     if (options.patches && *options.patches == 0)
         return Error{ErrorCode::bad_option, "the number of patches must be positive",
                      invalid_index};
     LayoutResult result;
     LayoutSummary& summary = result.summary;
-    const int genus = source.genus();
-    SizeField field = measure_size_field(source, curvature_scale * source.box().diagonal());
-    summary.target_patches =
-        options.patches ? *options.patches : default_patches(field.bending, genus);
-
-    const double width =
-        std::sqrt(surface_area(source) / static_cast<double>(summary.target_patches));
-    std::vector<double> limit(source.vertex_count());
-    for (Index v = 0; v < source.vertex_count(); ++v)
-        limit[v] = carrier_resolution * width / field.density[v];
-    CarrierMesh carrier = refine_carrier(
-        source, limit, max_refinement_floor + max_refinement_factor * source.face_count());
-    if (carrier.refined) {
-        summary.notes.push_back("edges split where the mesh is coarse for its patches: " +
-                                std::to_string(source.face_count()) + " faces became " +
-                                std::to_string(carrier.mesh.face_count()));
-        field = measure_size_field(carrier.mesh, curvature_scale * source.box().diagonal());
-    }
+    Result<Ground> ground = prepare_ground(source, options, summary);
+    if (!ground)
+        return ground.error();
     if (context.cancelled())
         return Context::cancelled_error("layout");
 
-    // V - E + F of quads on a surface of genus g: patches = vertices - (2 - 2 g).
-    const double vertices =
-        surplus * static_cast<double>(summary.target_patches) + 2.0 - 2.0 * genus;
-    Tiles tiles(carrier.mesh, field.density);
-    place_sites(tiles, static_cast<Index>(std::max(vertices, 4.0)), summary, context);
-    if (context.cancelled())
-        return Context::cancelled_error("layout");
-
-    Result<PatchComplex> complex = build_base_complex(tiles, context);
-    if (!complex)
-        return complex.error();
-    straighten_triangles(*complex, context);
-    const auto metric = [&](const CarrierMesh& on) {
-        return SizeMetric{field.density, scaled_area(on.mesh, field.density) /
-                                             static_cast<double>(summary.target_patches)};
-    };
-    improve_triangles(*complex, metric(carrier), context);
-    const auto finish = [&](PatchComplex& quads, CarrierMesh& on) -> Result<LayoutResult> {
-        // Vertices that came with a split have no density of their own yet.
-        if (on.mesh.vertex_count() != field.density.size())
-            field = measure_size_field(on.mesh, curvature_scale * source.box().diagonal());
-        improve_quads(quads, summary.target_patches, metric(on), context);
-        if (context.cancelled())
-            return Context::cancelled_error("layout");
-        Result<QuadDomain> domain = make_domain(quads, std::move(on));
-        if (!domain)
-            return domain.error();
-        result.domain = std::move(*domain);
-        return std::move(result);
-    };
-    if (!options.split_triangles) {
-        const Result<bool> paired = pair_triangles(*complex, context);
-        if (!paired)
-            return paired.error();
-        if (*paired)
-            return finish(*complex, carrier);
+    // The coarse mesh only saves time: what fails on it is done on the whole mesh.
+    Result<std::optional<Proxy>> proxy = make_proxy(*ground, summary.target_patches, context);
+    Result<Quads> quads = proxy.ok() ? make_quads(source, options, *ground,
+                                                  *proxy ? &**proxy : nullptr, summary, context)
+                                     : Result<Quads>(proxy.error());
+    if (!quads && quads.error().code == ErrorCode::layout_failed && (!proxy || *proxy)) {
+        summary.notes.push_back("laid out on the whole mesh: " + quads.error().message);
+        quads = make_quads(source, options, *ground, nullptr, summary, context);
     }
-    summary.subdivided = true;
-    summary.notes.push_back("triangles split in three quads each");
-    Result<SplitComplex> split = split_in_quads(*complex, source, carrier, context);
-    if (!split)
-        return split.error();
-    return finish(split->complex, *split->carrier);
+    if (!quads)
+        return quads.error();
+    CarrierMesh& carrier = quads->refined ? *quads->refined : *ground->carrier;
+    Result<QuadDomain> domain = make_domain(quads->complex, std::move(carrier), ground->corner);
+    if (!domain)
+        return domain.error();
+    if (Status lost = check_kept(*domain, source, options.constraints, ground->constraints))
+        return *lost;
+    result.domain = std::move(*domain);
+    return result;
 }
 
 } // namespace bot2nurbs

@@ -27,6 +27,12 @@ TEST_F(ConvertTest, a_supplied_domain_becomes_a_solid_in_every_format)
     EXPECT_EQ(c.continuity.max_gap, 0.0);
     EXPECT_LE(c.continuity.max_g1_angle_deg, 1e-8);
     EXPECT_LT(c.deviation.rms(), 1e-3 * c.diagonal);
+    ASSERT_TRUE(c.bound);
+    EXPECT_EQ(c.bound->termination, HausdorffTermination::gap_reached);
+    EXPECT_EQ(c.bound->patches.size(), 24u);
+    EXPECT_LE(c.deviation.max(), c.bound->upper());
+    EXPECT_GE(c.deviation.max(), c.bound->lower());
+    EXPECT_GE(c.bound->lower(), c.deviation.rms());
     ASSERT_EQ(report->outputs.size(), 3u);
     for (const OutputFile& file : report->outputs)
         EXPECT_EQ(file.bytes, std::filesystem::file_size(file.path));
@@ -178,10 +184,30 @@ TEST_F(ConvertTest, check_domain_accepts_what_convert_accepts)
     EXPECT_GT(checked->components[0].charts.min_jacobian, 0.0);
 }
 
-TEST_F(ConvertTest, an_open_mesh_is_refused_with_its_loops_and_a_vertex)
+TEST_F(ConvertTest, an_open_mesh_becomes_an_open_surface_with_a_warning_unless_it_was_expected)
+{
+    for (const Closure closure : {Closure::as_input, Closure::open}) {
+        ConvertOptions options = options_for({open_cylinder()});
+        options.domain_in.reset();
+        options.outputs = {path("a.3dm"), path("a.step")};
+        options.closure = closure;
+        Context context;
+        const Result<ConvertReport> report = convert(options, context);
+        ASSERT_TRUE(report) << report.error().message;
+        EXPECT_TRUE(report->valid());
+        EXPECT_FALSE(report->solid());
+        EXPECT_GE(report->components[0].brep.boundary_edges, 8u);
+        const bool warned = std::any_of(report->warnings.begin(), report->warnings.end(),
+                                        [](const Warning& w) { return w.code == "open"; });
+        EXPECT_EQ(warned, closure == Closure::as_input);
+    }
+}
+
+TEST_F(ConvertTest, an_open_mesh_is_refused_as_a_solid_with_its_loops)
 {
     ConvertOptions options = options_for({open_cylinder()});
     options.outputs = {path("a.3dm")};
+    options.closure = Closure::solid;
     Context context;
     const Result<ConvertReport> report = convert(options, context);
     ASSERT_FALSE(report);
@@ -240,7 +266,7 @@ TEST_F(ConvertTest, a_cancelled_conversion_writes_nothing_whenever_it_is_cancell
     ConvertOptions options = options_for({sphere_cube(1, 16)});
     options.outputs = {path("a.3dm"), path("a.step")};
     for (const char* stage : {"read", "check", "repair", "domain", "layout", "charts", "samples",
-                              "fit", "measure", "brep", "write"}) {
+                              "fit", "measure", "bound", "brep", "write"}) {
         Context context;
         bool reached = false;
         context.on_progress = [&](const std::string& name, double) {

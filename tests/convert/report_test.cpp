@@ -18,12 +18,14 @@ ConvertReport example_report()
     report.input_faces = 16;
     report.units = "mm";
     report.diagonal = 4.0;
-    report.sharp_edges = 3;
     for (const Index i : {0u, 1u}) {
         ComponentOutcome c;
         c.genus = static_cast<int>(i);
         c.diagonal = 2.0;
         c.domain = {"eck", "0123456789abcdef", 6, 12, 8, 8, 3 + i, {0, 0, 0, 8}};
+        c.features.detected_edges = 7;
+        c.features.kept_edges = 5 + i;
+        c.features.smoothed = {{i, i + 1}};
         c.fit.rounds.resize(5 + i);
         c.fit.unknowns = 100;
         c.fit.condition = 10.0 + i;
@@ -60,7 +62,10 @@ TEST(Report, has_the_fixed_names_and_sums_over_components)
     EXPECT_EQ(j["brep"]["valid"], true);
     EXPECT_EQ(j["brep"]["solid"], true);
     EXPECT_EQ(j["continuity"]["max_g1_angle_deg"], 2e-12);
-    EXPECT_EQ(j["features"]["smoothed_edges"], 3);
+    EXPECT_EQ(j["features"]["detected_edges"], 14);
+    EXPECT_EQ(j["features"]["kept_edges"], 11);
+    EXPECT_EQ(j["features"]["smoothed_edges"], 2);
+    EXPECT_EQ(j["features"]["smoothed"], json::parse("[[0,1],[1,2]]"));
     EXPECT_EQ(j["outputs"][0]["bytes"], 1234);
     EXPECT_EQ(j["stages"][0]["peak_rss_mib"], 12.0);
     EXPECT_EQ(j["stages"][0]["cpu_seconds"], 0.75);
@@ -78,6 +83,35 @@ TEST(Report, pools_deviations_by_samples_and_takes_the_worse_side)
     EXPECT_DOUBLE_EQ(d["rms"], std::fmax(0.03, surface_rms));
     EXPECT_DOUBLE_EQ(d["max_relative"], 0.05);
     EXPECT_EQ(d["kind"], "sampled");
+}
+
+TEST(Report, has_an_upper_bound_when_there_is_one_for_every_component)
+{
+    ConvertReport report = example_report();
+    HausdorffBound bound;
+    bound.surface_to_source.lower = 0.19;
+    bound.surface_to_source.upper = 0.21;
+    bound.source_to_surface.upper = 0.22;
+    bound.surface_to_source.worst.surface = {7, 0.25, 1.0};
+    bound.cells = 5;
+    report.components[1].bound = bound;
+    const json without = json::parse(report_to_json({}, report));
+    EXPECT_FALSE(without["deviation"].contains("upper_bound"));
+    EXPECT_EQ(without["components"][1]["deviation"]["upper_bound"], 0.22);
+    bound.source_to_surface.lower = bound.source_to_surface.upper = 0.3;
+    report.components[0].bound = bound;
+    const json j = json::parse(report_to_json({}, report));
+    EXPECT_EQ(j["deviation"]["kind"], "proven");
+    EXPECT_EQ(j["deviation"]["lower_bound"], 0.3);
+    EXPECT_EQ(j["deviation"]["upper_bound"], 0.3);
+    EXPECT_DOUBLE_EQ(j["deviation"]["upper_bound_relative"], 0.3 / report.diagonal);
+    const json second = j["components"][1]["deviation"];
+    EXPECT_EQ(second["worst"]["side"], "surface");
+    EXPECT_EQ(second["worst"]["patch"], 7);
+    EXPECT_EQ(second["worst"]["u"], 0.25);
+    EXPECT_EQ(second["bound"]["termination"], "gap_reached");
+    EXPECT_EQ(second["bound"]["cells"], 5);
+    EXPECT_EQ(j["components"][0]["deviation"]["worst"]["side"], "source");
 }
 
 TEST(Report, claims_no_solid_when_one_component_is_none)
