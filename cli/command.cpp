@@ -35,6 +35,10 @@ Exit codes:
   2 wrong use               6 a stage failed
   3 cannot read           130 interrupted)";
 
+const std::map<std::string, NormalMode> normal_modes{{"auto", NormalMode::automatic},
+                                                     {"given", NormalMode::given},
+                                                     {"estimate", NormalMode::estimate}};
+
 template <class T> CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value,
                                            const std::map<std::string, T>& choices,
                                            const std::string& text)
@@ -64,20 +68,36 @@ bool parse_features(const std::string& text, ConvertOptions& options)
     return !options.feature_options.check();
 }
 
+// Three finite numbers separated by commas, or nothing.
+std::optional<Vec3> parse_point(const std::string& text)
+{
+    const std::vector<std::string> words = CLI::detail::split(text, ',');
+    Vec3 p;
+    if (words.size() != 3)
+        return std::nullopt;
+    for (int k = 0; k < 3; ++k)
+        if (!CLI::detail::lexical_cast(words[static_cast<std::size_t>(k)], p[k]))
+            return std::nullopt;
+    return is_finite(p) ? std::optional(p) : std::nullopt;
+}
+
 } // namespace
 
 std::variant<Command, int> parse_command(int argc, char** argv)
 {
     Command command;
     ConvertOptions& o = command.options;
-    CLI::App app(
-        "Turns a triangle mesh into a watertight B-Rep of bicubic B-spline patches with exact "
-        "G1 joins.",
-        "bot2nurbs");
+    CLI::App app("Turns a triangle mesh or a cloud of points into a watertight B-Rep of bicubic "
+                 "B-spline patches with exact "
+                 "G1 joins.",
+                 "bot2nurbs");
     app.footer(footer);
     app.set_version_flag("--version", "bot2nurbs " BOT2NURBS_VERSION);
 
-    app.add_option("INPUT", o.input, "Mesh: .stl .obj .ply .off")->required();
+    app.add_option("INPUT", o.input,
+                   "Mesh: .stl .obj .ply .off. Points: .ply .obj .off without faces, .xyz "
+                   ".pts .txt .csv .pwn .pcd .las")
+        ->required();
     app.add_option("OUTPUT", o.outputs, "One or more of .3dm .step .stp .brep");
 
     const std::string surface = "Surface";
@@ -119,6 +139,32 @@ std::variant<Command, int> parse_command(int argc, char** argv)
     app.add_flag("--strict", o.strict, "Reject input that crosses itself")->group(input);
     bool no_repair = false;
     app.add_flag("--no-repair", no_repair, "Reject input that needs a repair")->group(input);
+
+    const std::string cloud = "Input of points";
+    app.add_flag("--points", o.cloud.points, "Take the points of a mesh and pass over its faces")
+        ->group(cloud);
+    add_choice(app, "--normals", o.cloud.normals, normal_modes,
+               "Whose normals: those of the file if they agree, of the file, or none of the file "
+               "(default: auto)")
+        ->type_name("auto|given|estimate")
+        ->group(cloud);
+    std::string viewpoint;
+    CLI::Option* viewpoint_option =
+        app.add_option("--viewpoint", viewpoint, "Where the scanner stood: normals turn to it")
+            ->type_name("X,Y,Z")
+            ->group(cloud);
+    int depth = 0;
+    CLI::Option* depth_option =
+        app.add_option("--depth", depth,
+                       "Finest level of the octree that the mesh is made on, 3 to 12 (default: "
+                       "from density and noise)")
+            ->type_name("N")
+            ->group(cloud);
+    app.add_option("--fill-holes", o.cloud.reconstruct.fill_holes,
+                   "Close places without points up to this size, as a fraction of the diagonal")
+        ->type_name("SIZE")
+        ->capture_default_str()
+        ->group(cloud);
 
     const std::string domain = "Domain";
     std::string domain_in, domain_out, tessellation, validated;
@@ -203,6 +249,16 @@ std::variant<Command, int> parse_command(int argc, char** argv)
             features.c_str());
         return exit_code(ErrorCode::bad_option);
     }
+    if (*viewpoint_option) {
+        o.cloud.orient.viewpoint = parse_point(viewpoint);
+        if (!o.cloud.orient.viewpoint) {
+            std::fprintf(stderr, "bot2nurbs: --viewpoint %s is not three numbers X,Y,Z\n",
+                         viewpoint.c_str());
+            return exit_code(ErrorCode::bad_option);
+        }
+    }
+    if (*depth_option)
+        o.cloud.reconstruct.depth = depth;
     if (*patches_option)
         o.patches = patches;
     if (*knots_option)

@@ -79,11 +79,24 @@ std::vector<std::string> component_lines(const ComponentOutcome& c, const std::s
     return lines;
 }
 
+std::vector<std::string> cloud_lines(const CloudReport& r, double diagonal, const std::string& unit)
+{
+    const double percent = diagonal > 0.0 ? 100.0 / diagonal : 0.0;
+    return {fmt::format("points    {}, spacing {:.3g} %, noise {:.2g} % of the diagonal ({:.2g} "
+                        "{}), normals {}",
+                        r.points, percent * r.spacing, percent * r.noise, r.noise, unit,
+                        r.normals.given ? "of the file" : "estimated"),
+            fmt::format("topology  {}, {:.3g} % of the closed surface without points",
+                        name(r.topology), 100.0 * r.evidence.uncovered_area)};
+}
+
 } // namespace
 
 std::vector<std::string> summarise(const ConvertReport& report)
 {
     std::vector<std::string> lines;
+    if (report.cloud)
+        lines = cloud_lines(*report.cloud, report.diagonal, report.units);
     for (const RepairNote& note : report.repairs)
         lines.push_back("repaired  " + note.message);
     for (std::size_t c = 0; c < report.components.size(); ++c) {
@@ -91,6 +104,14 @@ std::vector<std::string> summarise(const ConvertReport& report)
             lines.push_back(fmt::format("component {} of {}", c + 1, report.components.size()));
         for (std::string& line : component_lines(report.components[c], report.units))
             lines.push_back(std::move(line));
+    }
+    if (report.cloud && report.cloud->deviation.points > 0) {
+        const PointDeviation& d = report.cloud->deviation;
+        const double percent = report.diagonal > 0.0 ? 100.0 / report.diagonal : 0.0;
+        lines.push_back(fmt::format("to points rms {:.3g} %, 95 % within {:.3g} %, max {:.3g} %, "
+                                    "{} of {} farther than three deviations",
+                                    percent * d.rms, percent * d.percentile_95, percent * d.max,
+                                    d.far_points, d.points));
     }
     for (const OutputFile& output : report.outputs)
         lines.push_back(fmt::format("written   {} ({})", output.path, size_text(output.bytes)));
@@ -123,6 +144,14 @@ std::vector<std::string> describe(const ConvertOptions& options, const InputRepo
                                     plural(c.faces, "triangle", "triangles"), c.genus,
                                     c.orientable ? "" : " (not orientable)",
                                     plural(c.boundary_loops, "boundary loop", "boundary loops")));
+    }
+    if (report.cloud) {
+        const CloudReport& r = *report.cloud;
+        lines.push_back(fmt::format("mesh made of {}: spacing {:.4g}, noise {:.3g}, topology {}",
+                                    plural(r.points, "point", "points"), r.spacing, r.noise,
+                                    name(r.topology)));
+        for (const std::string& doubt : r.evidence.doubts)
+            lines.push_back("doubt: " + doubt);
     }
     if (m.sharp_edges > 0)
         lines.push_back(

@@ -48,12 +48,14 @@ PUBLIC_HEADERS = {
     "spline_network": "spline",
     "fit_network": "fit",
     "deviation": "brep",
+    "point_deviation": "brep",
     "hausdorff_bound": "brep",
     "brep": "brep",
     "read_mesh": "io",
     "read_points": "io",
     "write_brep": "io",
     "report": "convert",
+    "cloud_report": "convert",
     "convert": "convert",
 }
 

@@ -17,9 +17,9 @@ struct CleanPoints {
     std::vector<double> confidence;
     std::vector<Index> source; //!< Per point: its number in the cloud.
 
-    Index not_finite = 0;      //!< Points of the cloud that are not finite.
-    Index duplicates = 0;      //!< Points at places where the cloud has another one before.
-    Index without_normal = 0;  //!< Points whose normal is zero or not finite, if there are others.
+    Index not_finite = 0;     //!< Points of the cloud that are not finite.
+    Index duplicates = 0;     //!< Points at places where the cloud has another one before.
+    Index without_normal = 0; //!< Points whose normal is zero or not finite, if there are others.
 };
 
 //! Drops points that are not finite and merges those at one place: their normals are averaged, the

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bot2nurbs/check_mesh.h"
+#include "bot2nurbs/cloud_report.h"
 #include "bot2nurbs/context.h"
 #include "bot2nurbs/detect_features.h"
 #include "bot2nurbs/fit_network.h"
@@ -34,7 +35,9 @@ enum class Closure {
 
 //! What convert() reads, makes and writes. Paths are as the operating system takes them.
 struct ConvertOptions {
-    std::string input; //!< Mesh file: .stl, .obj, .ply or .off.
+    //! Mesh: .stl, .obj, .ply or .off. Or points: these without faces, .xyz, .pts, .txt, .csv,
+    //! .pwn, .pcd or .las; see read_points().
+    std::string input;
     //! B-Rep files: .3dm, .step, .stp or .brep. May be empty when domain_out
     //! or tessellation is given.
     std::vector<std::string> outputs;
@@ -51,6 +54,8 @@ struct ConvertOptions {
     //! How creases are found. With FeatureMode::all its least_clear_share counts as 0.
     FeatureOptions feature_options;
     Closure closure = Closure::as_input;
+
+    CloudOptions cloud; //!< For an input of points.
 
     bool repair = true;  //!< Make harmless repairs; false: reject an input that needs any.
     bool strict = false; //!< Reject self-intersecting input instead of warning.
@@ -81,7 +86,9 @@ struct ConvertOptions {
 
 //! Runs the whole way from a mesh file to B-Rep files: read, check, repair, and for each connected
 //! component layout (or a supplied domain), charts, samples, spline network, fit, B-Rep; then
-//! writes all components as solids of one file, in each format asked for.
+//! writes all components as solids of one file, in each format asked for. A cloud of points first
+//! gets normals and a mesh (find_normals(), reconstruct_surface()); the mesh says the topology and
+//! where to start, the surface is fitted to the points.
 //!
 //! Guarantees:
 //! 1. every file is written whole or not at all, and none before every component has passed its
@@ -95,9 +102,10 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context);
 
 //! What the first steps of convert() say of an input.
 struct InputReport {
-    MeshReport mesh;                 //!< Of the file as it is.
-    std::vector<RepairNote> repairs; //!< What convert() would change.
-    std::optional<Error> rejection;  //!< Why convert() would refuse it; absent when it would not.
+    MeshReport mesh; //!< Of the file as it is; of points, of the mesh through them.
+    std::optional<CloudReport> cloud; //!< For an input of points.
+    std::vector<RepairNote> repairs;  //!< What convert() would change.
+    std::optional<Error> rejection;   //!< Why convert() would refuse it; absent when it would not.
 };
 
 //! Reads and checks `options.input` without converting it. Errors: those of read_mesh; cancelled.

@@ -52,6 +52,20 @@ void add_curve_samples(const ManifoldMesh& source, const QuadComplex& complex,
                        const std::vector<QuadChart>& charts, const SampleOptions& options,
                        SurfaceSampleSet& samples);
 
+//! Given points as samples: each placed at its closest point of the source, and where the charts
+//! map that. Normals stay unknown. Cost O((F + n) log F). Errors: invalid_domain (no chart covers a
+//! face), cancelled. The same for any thread count. \pre as many positive weights as points
+Result<SurfaceSampleSet> project_samples(const ManifoldMesh& source,
+                                         const std::vector<QuadChart>& charts,
+                                         const std::vector<Vec3>& points,
+                                         const std::vector<double>& weights, Context& context);
+
+//! Adds a sample of the source in every Bezier piece (4 x 4 a quad) that has none, with the area of
+//! the piece as weight: it holds the surface where there are no data. For samples without normals.
+//! \return how many were added. Errors: those of make_samples.
+Result<Index> add_anchor_samples(const ManifoldMesh& source, const std::vector<QuadChart>& charts,
+                                 SurfaceSampleSet& samples, Context& context);
+
 //! Unit normals of the three corners of every face, at 3 f + k, as make_samples uses them.
 std::vector<Vec3> corner_normals(const ManifoldMesh& source, double smooth_angle, Context& context);
 

@@ -21,8 +21,15 @@ struct FitOptions {
     int max_rounds = 8;     //!< Solves, each but the first after parameter correction; at least 5.
     double fairness = 1e-4; //!< Weight of the thin-plate energy in the first round, dimensionless.
     double fairness_floor = 1e-6; //!< The weight falls by sqrt(10) a round down to this.
+    //! Standard deviation of the samples across the surface, in their units. Fairness is raised at
+    //! the start until the surface is no nearer to them than this, and does not fall while it is
+    //! nearer: a closer fit would follow the noise (Morozov's discrepancy principle).
+    double noise = 0.0;
     DistanceRows rows = DistanceRows::tangent;
     bool robust = false; //!< Iteratively reweighted least squares (Huber) against outliers.
+    //! Standard deviation, in units of the samples, that robust fits assume at least: what lies
+    //! nearer than about this is not taken for an outlier, however well other samples are met.
+    double least_deviation = 0.0;
     double stall = 0.02; //!< Stop when a round lowers the rms error by less than this share.
     //! Largest condition of the scaled normal matrix that is trusted (half the digits of a double
     //! are left for the solution at 1e8); above it the rows are solved by QR.

@@ -27,8 +27,8 @@ struct OrientationSummary {
 //! points are sought whose winding number is one half at every point \cite lin_2024, for all points
 //! together, so that thin sheets, cavities and separate bodies come out right. A normal that is
 //! more than 30 degrees off that direction becomes it: there the points do not show a plane. Points
-//! marked as outliers take no part, but get a sign. Points that all lie in one plane have no inside:
-//! their normals turn to one side of it.
+//! marked as outliers take no part, but get a sign. Points that all lie in one plane have no
+//! inside: their normals turn to one side of it.
 //!
 //! Cost O(n log n). The same for any thread count. Errors: bad_option, cancelled. \pre `estimate`
 //! was made for `points`
@@ -40,7 +40,6 @@ Result<OrientationSummary> orient_normals(const std::vector<Vec3>& points,
 //! both) have a normal more than 120 degrees away from its own: one of two such normals is wrong,
 //! or sheets lie closer than the points. Zero normals take no part. Errors: cancelled.
 Result<std::vector<char>> contradicted_normals(const std::vector<Vec3>& points,
-                                               const std::vector<Vec3>& normals,
-                                               Context& context);
+                                               const std::vector<Vec3>& normals, Context& context);
 
 } // namespace bot2nurbs

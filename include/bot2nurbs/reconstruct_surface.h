@@ -44,13 +44,13 @@ struct CloudHole {
 
 //! What speaks for and against the topology.
 struct SurfaceEvidence {
-    int depth = 0;               //!< Of the octree.
-    double uncovered_area = 0.0; //!< Share of the closed surface without points near it.
-    std::vector<CloudHole> holes; //!< Largest first.
-    int genus = 0;                //!< Sum over the components, boundary loops counted as closed.
-    int finer_genus = 0;          //!< The same when reconstructed with cells of half the size.
-    Index components = 0;         //!< That were kept.
-    Index dropped_components = 0; //!< Small ones that few points support.
+    int depth = 0;                   //!< Of the octree.
+    double uncovered_area = 0.0;     //!< Share of the closed surface without points near it.
+    std::vector<CloudHole> holes;    //!< Largest first.
+    int genus = 0;                   //!< Sum over the components, boundary loops counted as closed.
+    int finer_genus = 0;             //!< The same when reconstructed with cells of half the size.
+    Index components = 0;            //!< That were kept.
+    Index dropped_components = 0;    //!< Small ones that few points support.
     std::vector<std::string> doubts; //!< Why the topology is uncertain, in words; else empty.
 };
 
@@ -75,8 +75,8 @@ struct Reconstruction {
 //! without points than with.
 //!
 //! Cost O(n log n). The same for any thread count. Errors: bad_option, bad_geometry (no surface was
-//! found), cancelled. \pre estimate.normals point to one side; inward ones give a surface that faces
-//! inward
+//! found), cancelled. \pre estimate.normals point to one side; inward ones give a surface that
+//! faces inward
 Result<Reconstruction> reconstruct_surface(const std::vector<Vec3>& points,
                                            const SurfaceEstimate& estimate, double disagreement,
                                            const ReconstructOptions& options, Context& context);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bot2nurbs/brep.h"
+#include "bot2nurbs/cloud_report.h"
 #include "bot2nurbs/deviation.h"
 #include "bot2nurbs/fit_network.h"
 #include "bot2nurbs/hausdorff_bound.h"
@@ -59,7 +60,9 @@ struct ComponentOutcome {
     std::optional<LayoutSummary> layout; //!< Absent when the domain was supplied.
     LayoutQuality quality;               //!< Of the domain.
     FitSummary fit;                      //!< Distances in units of the input.
-    Deviation deviation;                 //!< In units of the input.
+    //! In units of the input. For an input of points the source is the points on the way to the
+    //! surface, and the mesh through them on the way back.
+    Deviation deviation;
     std::optional<HausdorffBound> bound; //!< Of the surface as written against the input.
     Continuity continuity;               //!< Of the surface as written.
     BrepReport brep;
@@ -73,7 +76,8 @@ struct OutputFile {
 
 //! What a conversion read, did and wrote.
 struct ConvertReport {
-    Index input_vertices = 0, input_faces = 0; //!< Triangles, before repair.
+    Index input_vertices = 0, input_faces = 0; //!< Triangles, before repair; see `cloud`.
+    std::optional<CloudReport> cloud;          //!< For an input of points: the mesh is made then.
     std::string units;                         //!< Written into files that carry a unit.
     double diagonal = 0.0;                     //!< Of the box of all components.
     std::vector<RepairNote> repairs;

@@ -52,9 +52,8 @@ bool find_first_at_place(const std::vector<Vec3>& positions, std::vector<Index>&
         if (i == 0 || items[i].key != items[i - 1].key)
             places.clear();
         const Index point = items[i].slot;
-        const auto same = std::find_if(places.begin(), places.end(), [&](Index p) {
-            return positions[p] == positions[point];
-        });
+        const auto same = std::find_if(places.begin(), places.end(),
+                                       [&](Index p) { return positions[p] == positions[point]; });
         first[point] = same != places.end() ? *same : point;
         if (same == places.end())
             places.push_back(point);

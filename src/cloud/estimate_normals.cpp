@@ -70,30 +70,29 @@ Result<SurfaceEstimate> estimate_normals(const std::vector<Vec3>& points, Contex
     estimate.normals.resize(n);
     estimate.confidence.resize(n);
     const double radius = radius_over_noise * scale->noise;
-    if (!for_each_chunk(
-            context, n, points_per_chunk, [&](std::size_t begin, std::size_t end) {
-                std::vector<PointTree::Neighbor> found;
-                for (std::size_t i = begin; i < end; ++i) {
-                    std::size_t count = least_neighbors + 1;
+    if (!for_each_chunk(context, n, points_per_chunk, [&](std::size_t begin, std::size_t end) {
+            std::vector<PointTree::Neighbor> found;
+            for (std::size_t i = begin; i < end; ++i) {
+                std::size_t count = least_neighbors + 1;
+                tree->nearest(points[i], count, found);
+                // Doubled until the radius is reached, then cut to it.
+                while (found.back().distance2 < radius * radius && count < most_neighbors &&
+                       found.size() == count) {
+                    count = std::min(2 * count, most_neighbors);
                     tree->nearest(points[i], count, found);
-                    // Doubled until the radius is reached, then cut to it.
-                    while (found.back().distance2 < radius * radius && count < most_neighbors &&
-                           found.size() == count) {
-                        count = std::min(2 * count, most_neighbors);
-                        tree->nearest(points[i], count, found);
-                    }
-                    while (found.size() > least_neighbors + 1 &&
-                           found.back().distance2 > radius * radius)
-                        found.pop_back();
-                    const PlaneFit plane = fit_plane(points, found.data(), found.size());
-                    estimate.normals[i] = plane.axes[0];
-                    estimate.confidence[i] =
-                        scale->outlier[i]
-                            ? 0.0
-                            
-                            : scale->density[i] * plane_confidence(plane, points[i], scale->noise);
                 }
-            }))
+                while (found.size() > least_neighbors + 1 &&
+                       found.back().distance2 > radius * radius)
+                    found.pop_back();
+                const PlaneFit plane = fit_plane(points, found.data(), found.size());
+                estimate.normals[i] = plane.axes[0];
+                estimate.confidence[i] =
+                    scale->outlier[i]
+                        ? 0.0
+
+                        : scale->density[i] * plane_confidence(plane, points[i], scale->noise);
+            }
+        }))
         return Context::cancelled_error("normals");
     estimate.spacing = std::move(scale->spacing);
     estimate.outlier = std::move(scale->outlier);

@@ -40,8 +40,7 @@ std::vector<Index> even_subset(const std::vector<Vec3>& points, std::size_t coun
         const Vec3 side = box.max - box.min;
         const int axis = side.x >= side.y && side.x >= side.z ? 0 : (side.y >= side.z ? 1 : 2);
         const std::size_t half = cell.share / 2;
-        const std::size_t middle =
-            cell.begin + (cell.end - cell.begin) * half / cell.share;
+        const std::size_t middle = cell.begin + (cell.end - cell.begin) * half / cell.share;
         const auto at = [&](std::size_t i) {
             return order.begin() + static_cast<std::ptrdiff_t>(i);
         };

@@ -37,24 +37,23 @@ Result<Index> take_given(const CleanPoints& points, SurfaceEstimate& estimate, C
     const Result<PointTree> tree = PointTree::build(places, context);
     if (!tree)
         return tree.error();
-    if (!for_each_chunk(
-            context, points.positions.size(), points_per_chunk,
-            [&](std::size_t begin, std::size_t end) {
-                std::vector<PointTree::Neighbor> found;
-                for (std::size_t i = begin; i < end; ++i) {
-                    Vec3& normal = estimate.normals[i];
-                    if (points.normals[i] != Vec3{}) {
-                        normal = points.normals[i];
-                        continue;
-                    }
-                    tree->nearest(points.positions[i], voters, found);
-                    double side = 0.0;
-                    for (const PointTree::Neighbor& n : found)
-                        side += dot(given[n.point], normal);
-                    if (side < 0.0)
-                        normal = -normal;
-                }
-            }))
+    if (!for_each_chunk(context, points.positions.size(), points_per_chunk,
+                        [&](std::size_t begin, std::size_t end) {
+                            std::vector<PointTree::Neighbor> found;
+                            for (std::size_t i = begin; i < end; ++i) {
+                                Vec3& normal = estimate.normals[i];
+                                if (points.normals[i] != Vec3{}) {
+                                    normal = points.normals[i];
+                                    continue;
+                                }
+                                tree->nearest(points.positions[i], voters, found);
+                                double side = 0.0;
+                                for (const PointTree::Neighbor& n : found)
+                                    side += dot(given[n.point], normal);
+                                if (side < 0.0)
+                                    normal = -normal;
+                            }
+                        }))
         return Context::cancelled_error("normals");
     return static_cast<Index>(points.positions.size() - places.size());
 }
@@ -88,12 +87,11 @@ Result<CloudNormals> find_normals(const CleanPoints& points, NormalMode mode,
         if (!contradicted)
             return contradicted.error();
         report.given_contradicted = share_of(
-            static_cast<std::size_t>(std::count(contradicted->begin(), contradicted->end(), 1)),
-            n);
+            static_cast<std::size_t>(std::count(contradicted->begin(), contradicted->end(), 1)), n);
     }
-    report.given = mode == NormalMode::given ||
-                   (mode == NormalMode::automatic && missing <= most_missing &&
-                    report.given_contradicted <= most_contradicted);
+    report.given =
+        mode == NormalMode::given || (mode == NormalMode::automatic && missing <= most_missing &&
+                                      report.given_contradicted <= most_contradicted);
     if (report.given) {
         const Result<Index> filled = take_given(points, *estimate, context);
         if (!filled)

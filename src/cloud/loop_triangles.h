@@ -13,9 +13,8 @@ namespace bot2nurbs {
 //! Cost O(n^3).
 class LoopTriangles {
 public:
-    template <class Forbidden>
-    const std::vector<std::array<int, 3>>& find(const std::vector<Vec3>& polygon,
-                                                const Forbidden& forbidden)
+    template <class Forbidden> const std::vector<std::array<int, 3>>&
+    find(const std::vector<Vec3>& polygon, const Forbidden& forbidden)
     {
         n_ = static_cast<int>(polygon.size());
         allowed_cost_.assign(static_cast<std::size_t>(n_) * static_cast<std::size_t>(n_), 0.0);

@@ -120,17 +120,16 @@ Result<Octree> Octree::build(const std::vector<WantedCell>& wanted, int full, in
 bool Octree::number_vertices(OctreeLevel& level, int l, const Context& context)
 {
     std::vector<KeyedSlot> items(8 * level.cells.size());
-    for_each_chunk(context, level.cells.size(), cells_per_chunk,
-                   [&](std::size_t begin, std::size_t end) {
-                       for (std::size_t c = begin; c < end; ++c) {
-                           const Lattice p = morton::decode(level.cells[c]);
-                           for (std::uint32_t k = 0; k < 8; ++k)
-                               items[8 * c + k] = {morton::encode({p[0] + (k & 1),
-                                                                   p[1] + (k >> 1 & 1),
-                                                                   p[2] + (k >> 2)}),
-                                                   static_cast<Index>(8 * c + k)};
-                       }
-                   });
+    for_each_chunk(
+        context, level.cells.size(), cells_per_chunk, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t c = begin; c < end; ++c) {
+                const Lattice p = morton::decode(level.cells[c]);
+                for (std::uint32_t k = 0; k < 8; ++k)
+                    items[8 * c + k] = {
+                        morton::encode({p[0] + (k & 1), p[1] + (k >> 1 & 1), p[2] + (k >> 2)}),
+                        static_cast<Index>(8 * c + k)};
+            }
+        });
     if (!sort_keys(items, 3 * (l + 1), context))
         return false;
     level.corners.resize(items.size());

@@ -10,10 +10,10 @@ namespace bot2nurbs {
 
 //! Cells of one level of an octree over the unit cube, those with children included.
 struct OctreeLevel {
-    std::vector<std::uint64_t> cells; //!< Morton keys, ascending; level l has 2^l cells an axis.
-    std::vector<Index> refined;       //!< Cells with children, ascending.
-    std::vector<Index> children;      //!< Per cell: its first child on the next level, or
-                                      //!< invalid_index. Child k is on the side of corner k.
+    std::vector<std::uint64_t> cells;    //!< Morton keys, ascending; level l has 2^l cells an axis.
+    std::vector<Index> refined;          //!< Cells with children, ascending.
+    std::vector<Index> children;         //!< Per cell: its first child on the next level, or
+                                         //!< invalid_index. Child k is on the side of corner k.
     std::vector<std::uint64_t> vertices; //!< Morton keys of the cells' corners, ascending.
     std::vector<Index> corners; //!< Slot 8 c + k: the vertex at corner k of cell c. Bit 0 of k says
                                 //!< x, bit 1 y, bit 2 z.

@@ -41,7 +41,8 @@ double between(OctreeHats::Corners v, Index k, Index i)
         count /= 2; // values of the low side, then those of the high side
         const Index steps = (k >> axis & 1) + (i >> axis & 1);
         for (std::size_t j = 0; j < count; ++j)
-            v[j] = steps == 0 ? v[j] : (steps == 2 ? v[j + count] : 0.5 * v[j] + 0.5 * v[j + count]);
+            v[j] =
+                steps == 0 ? v[j] : (steps == 2 ? v[j + count] : 0.5 * v[j] + 0.5 * v[j + count]);
     }
     return v[0];
 }

@@ -47,17 +47,16 @@ template <class Leaf> void OctreeHats::from_leaves(const Leaf& leaf, OctreeField
     for (int l = tree_.depth(); l >= 0; --l) {
         const OctreeLevel& level = tree_.level(l);
         at_corners_.resize(std::max<std::size_t>(at_corners_.size(), level.cells.size()));
-        for_each_chunk(context_, level.cells.size(), cells_per_chunk,
-                       [&](std::size_t begin, std::size_t end) {
-                           for (std::size_t c = begin; c < end; ++c) {
-                               const Index cell = static_cast<Index>(c);
-                               at_corners_[c] =
-                                   level.is_leaf(cell)
-                                       ? leaf(l, cell)
-                                       : restricted(l, cell,
-                                                    field[static_cast<std::size_t>(l) + 1]);
-                           }
-                       });
+        for_each_chunk(
+            context_, level.cells.size(), cells_per_chunk, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t c = begin; c < end; ++c) {
+                    const Index cell = static_cast<Index>(c);
+                    at_corners_[c] =
+                        level.is_leaf(cell)
+                            ? leaf(l, cell)
+                            : restricted(l, cell, field[static_cast<std::size_t>(l) + 1]);
+                }
+            });
         gather(l, field[static_cast<std::size_t>(l)]);
         // The coarser level has taken what it needs of the finer one.
         if (l < tree_.depth())

@@ -116,8 +116,8 @@ private:
                 continue;
             // The corners of their faces towards us: ours, on the neighbour's other side.
             for (std::size_t i = 0; i < 4; ++i)
-                face[i] = corner(l + 1, first + static_cast<Index>(k),
-                                 side_corners[side][i] ^ across);
+                face[i] =
+                    corner(l + 1, first + static_cast<Index>(k), side_corners[side][i] ^ across);
             cut_face(l + 1, face, side);
         }
     }
@@ -271,8 +271,8 @@ void add_polygon(const std::vector<Crossing>& corners, std::uint64_t own_key, Lo
     part.keys.push_back(own_key);
     part.positions.push_back(middle);
     for (int i = 0; i < n; ++i)
-        part.triangles.push_back({first + static_cast<Index>(i),
-                                  first + static_cast<Index>((i + 1) % n), centre});
+        part.triangles.push_back(
+            {first + static_cast<Index>(i), first + static_cast<Index>((i + 1) % n), centre});
 }
 
 } // namespace
@@ -288,25 +288,25 @@ Result<TriangleSoup> octree_surface(const Octree& tree, const OctreeFunction& fu
         const OctreeLevel& level = tree.level(l);
         const std::size_t first_part = parts.size();
         parts.resize(first_part + (level.cells.size() + cells_per_chunk - 1) / cells_per_chunk);
-        for_each_chunk(
-            context, level.cells.size(), cells_per_chunk,
-            [&](std::size_t begin, std::size_t end) {
-                CellSurface surface(tree, function);
-                LoopTriangles loops;
-                std::vector<CellSurface::Polygon> polygons;
-                SurfacePart& part = parts[first_part + begin / cells_per_chunk];
-                for (std::size_t c = begin; c < end; ++c) {
-                    if (!level.is_leaf(static_cast<Index>(c)))
-                        continue;
-                    surface.find(l, static_cast<Index>(c), polygons);
-                    // At most four polygons a cell on its own grid, more beside smaller cells.
-                    for (std::size_t p = 0; p < polygons.size(); ++p)
-                        add_polygon(polygons[p].corners,
-                                    (std::uint64_t{1} << edge_bits) +
-                                        (((cells_before + c) << 4) | p),
-                                    loops, part);
-                }
-            });
+        for_each_chunk(context, level.cells.size(), cells_per_chunk,
+                       [&](std::size_t begin, std::size_t end) {
+                           CellSurface surface(tree, function);
+                           LoopTriangles loops;
+                           std::vector<CellSurface::Polygon> polygons;
+                           SurfacePart& part = parts[first_part + begin / cells_per_chunk];
+                           for (std::size_t c = begin; c < end; ++c) {
+                               if (!level.is_leaf(static_cast<Index>(c)))
+                                   continue;
+                               surface.find(l, static_cast<Index>(c), polygons);
+                               // At most four polygons a cell on its own grid, more beside smaller
+                               // cells.
+                               for (std::size_t p = 0; p < polygons.size(); ++p)
+                                   add_polygon(polygons[p].corners,
+                                               (std::uint64_t{1} << edge_bits) +
+                                                   (((cells_before + c) << 4) | p),
+                                               loops, part);
+                           }
+                       });
         cells_before += level.cells.size();
     }
     std::vector<KeyedSlot> items;

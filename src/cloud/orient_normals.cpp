@@ -50,9 +50,8 @@ std::vector<Vec3> followed_directions(const std::vector<Vec3>& points,
                 }
                 Vec3 sum;
                 for (const PointTree::Neighbor& n : found) {
-                    const double across =
-                        std::abs(dot(subset[n.point] - points[i], normals[i])) /
-                        std::sqrt(n.distance2);
+                    const double across = std::abs(dot(subset[n.point] - points[i], normals[i])) /
+                                          std::sqrt(n.distance2);
                     sum += (1.0 - across) / n.distance2 * directions[n.point];
                 }
                 followed[i] = sum;
@@ -68,9 +67,8 @@ struct Directions {
     Index solved = 0;
 };
 
-Result<Directions> find_directions(const std::vector<Vec3>& points,
-                                   const SurfaceEstimate& estimate, Index most_points,
-                                   Context& context)
+Result<Directions> find_directions(const std::vector<Vec3>& points, const SurfaceEstimate& estimate,
+                                   Index most_points, Context& context)
 {
     // Outliers get a direction, but none from them.
     std::vector<double> spacing = estimate.spacing;
@@ -103,8 +101,8 @@ Result<Directions> find_directions(const std::vector<Vec3>& points,
     const Result<PointTree> tree = PointTree::build(subset, context);
     if (!tree)
         return tree.error();
-    result.at_points = followed_directions(points, estimate.normals, *tree, subset, *directions,
-                                           context);
+    result.at_points =
+        followed_directions(points, estimate.normals, *tree, subset, *directions, context);
     result.exact = false;
     result.solved = static_cast<Index>(subset.size());
     return result;
@@ -215,26 +213,25 @@ Result<std::vector<char>> contradicted_normals(const std::vector<Vec3>& points,
     if (!tree)
         return tree.error();
     std::vector<char> contradicted(points.size(), 0);
-    if (!for_each_chunk(context, points.size(), points_per_chunk,
-                        [&](std::size_t begin, std::size_t end) {
-                            std::vector<PointTree::Neighbor> found;
-                            for (std::size_t i = begin; i < end; ++i) {
-                                const Vec3 n = normalized(normals[i]);
-                                tree->nearest(points[i], voters + 1, found);
-                                int against = 0, all = 0;
-                                for (const PointTree::Neighbor& f : found) {
-                                    const Vec3 m = normalized(normals[f.point]);
-                                    const Vec3 line = normalized(points[f.point] - points[i]);
-                                    if (n == Vec3{} || m == Vec3{} || line == Vec3{} ||
-                                        std::abs(dot(line, n)) > beside ||
-                                        std::abs(dot(line, m)) > beside)
-                                        continue;
-                                    ++all;
-                                    against += dot(n, m) < opposed;
-                                }
-                                contradicted[i] = 2 * against > all;
-                            }
-                        }))
+    if (!for_each_chunk(
+            context, points.size(), points_per_chunk, [&](std::size_t begin, std::size_t end) {
+                std::vector<PointTree::Neighbor> found;
+                for (std::size_t i = begin; i < end; ++i) {
+                    const Vec3 n = normalized(normals[i]);
+                    tree->nearest(points[i], voters + 1, found);
+                    int against = 0, all = 0;
+                    for (const PointTree::Neighbor& f : found) {
+                        const Vec3 m = normalized(normals[f.point]);
+                        const Vec3 line = normalized(points[f.point] - points[i]);
+                        if (n == Vec3{} || m == Vec3{} || line == Vec3{} ||
+                            std::abs(dot(line, n)) > beside || std::abs(dot(line, m)) > beside)
+                            continue;
+                        ++all;
+                        against += dot(n, m) < opposed;
+                    }
+                    contradicted[i] = 2 * against > all;
+                }
+            }))
         return Context::cancelled_error("orientation");
     return contradicted;
 }

@@ -51,8 +51,11 @@ public:
         found_.clear();
     }
     bool full() const { return found_.size() == capacity_; }
-    double worstDist() const { return full() && !found_.empty() ? found_.back().distance2 : limit2_; } // NOLINT
-    bool addPoint(double distance2, Index point)                                    // NOLINT
+    double worstDist() const
+    {
+        return full() && !found_.empty() ? found_.back().distance2 : limit2_;
+    }                                            // NOLINT
+    bool addPoint(double distance2, Index point) // NOLINT
     {
         if (!(distance2 < limit2_))
             return true;
@@ -144,23 +147,22 @@ Result<NeighborGraph> find_neighbors(const PointTree& tree, const std::vector<Ve
     NeighborGraph graph;
     graph.k = std::min(k, points.size() - 1);
     graph.neighbors.resize(points.size() * graph.k);
-    if (!for_each_chunk(context, points.size(), points_per_chunk,
-                        [&](std::size_t begin, std::size_t end) {
-                            std::vector<PointTree::Neighbor> found;
-                            for (std::size_t i = begin; i < end; ++i) {
-                                tree.nearest(points[i], graph.k + 1, found);
-                                // The point itself need not be the first of several at one place.
-                                auto own = std::find_if(
-                                    found.begin(), found.end(),
-                                    [i](const PointTree::Neighbor& n) { return n.point == i; });
-                                if (own == found.end())
-                                    --own;
-                                found.erase(own);
-                                std::copy(found.begin(), found.end(),
-                                          graph.neighbors.begin() +
-                                              static_cast<std::ptrdiff_t>(i * graph.k));
-                            }
-                        }))
+    if (!for_each_chunk(
+            context, points.size(), points_per_chunk, [&](std::size_t begin, std::size_t end) {
+                std::vector<PointTree::Neighbor> found;
+                for (std::size_t i = begin; i < end; ++i) {
+                    tree.nearest(points[i], graph.k + 1, found);
+                    // The point itself need not be the first of several at one place.
+                    auto own =
+                        std::find_if(found.begin(), found.end(),
+                                     [i](const PointTree::Neighbor& n) { return n.point == i; });
+                    if (own == found.end())
+                        --own;
+                    found.erase(own);
+                    std::copy(found.begin(), found.end(),
+                              graph.neighbors.begin() + static_cast<std::ptrdiff_t>(i * graph.k));
+                }
+            }))
         return Context::cancelled_error("neighbours");
     return graph;
 }

@@ -175,8 +175,8 @@ private:
                     const Index v = tree_.level(l).corners[8 * at.cell + k];
                     if (tree_.level(l).is_interior(v))
                         for (int axis = 0; axis < 3; ++axis)
-                            field[static_cast<std::size_t>(axis)][static_cast<std::size_t>(l)]
-                                 [v] += density * w[k] * s.normal[axis];
+                            field[static_cast<std::size_t>(axis)][static_cast<std::size_t>(l)][v] +=
+                                density * w[k] * s.normal[axis];
                 }
             });
         });
@@ -315,8 +315,9 @@ private:
         double beta = 0.0;
         while (result.iterations < most_iterations && !context_.cancelled() &&
                rho > residual_limit * residual_limit * start) {
-            for_each_value(
-                [&](std::size_t l, std::size_t v) { p[l][v] = d[l][v] * r[l][v] + beta * p[l][v]; });
+            for_each_value([&](std::size_t l, std::size_t v) {
+                p[l][v] = d[l][v] * r[l][v] + beta * p[l][v];
+            });
             apply(p, values, q);
             const double curvature =
                 sum([&](std::size_t l, std::size_t v) { return p[l][v] * q[l][v]; });

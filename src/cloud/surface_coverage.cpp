@@ -104,12 +104,11 @@ Result<SurfaceCoverage> measure_coverage(const TriangleSoup& mesh, const std::ve
         }
     });
     std::vector<Index> nearest_component(kept.size());
-    if (!for_each_chunk(context, kept.size(), places_per_chunk,
-                        [&](std::size_t begin, std::size_t end) {
-                            for (std::size_t i = begin; i < end; ++i)
-                                nearest_component[i] =
-                                    coverage.component[vertices->nearest(kept[i]).point];
-                        }))
+    if (!for_each_chunk(
+            context, kept.size(), places_per_chunk, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i)
+                    nearest_component[i] = coverage.component[vertices->nearest(kept[i]).point];
+            }))
         return Context::cancelled_error("reconstruction");
     coverage.points.assign(components, 0);
     coverage.area.assign(components, 0.0);
@@ -182,8 +181,8 @@ TriangleSoup cut_out(const TriangleSoup& mesh, const SurfaceCoverage& coverage,
     std::vector<std::array<Index, 3>> triangles;
     std::map<std::array<Index, 2>, Index> cuts; // per edge across the line: its new vertex
     const auto vertex_between = [&](Index in, Index out) {
-        const auto [at, added] = cuts.try_emplace(
-            {std::min(in, out), std::max(in, out)}, static_cast<Index>(positions.size()));
+        const auto [at, added] = cuts.try_emplace({std::min(in, out), std::max(in, out)},
+                                                  static_cast<Index>(positions.size()));
         if (added) {
             const double a = coverage.spacings[in], b = coverage.spacings[out];
             const double t =

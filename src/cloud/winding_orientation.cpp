@@ -117,8 +117,7 @@ Result<std::vector<Vec3>> winding_directions(const std::vector<Vec3>& points,
     }
     std::vector<Vec3> directions(n);
     for (std::size_t i = 0; i < n; ++i)
-        directions[tree->order()[i]] =
-            normalized(Vec3{outward.x[i], outward.y[i], outward.z[i]});
+        directions[tree->order()[i]] = normalized(Vec3{outward.x[i], outward.y[i], outward.z[i]});
     return directions;
 }
 

@@ -139,31 +139,31 @@ void WindingTree::build_nodes(std::vector<Index>& order, const std::vector<Vec3>
 bool WindingTree::find_interactions(const Context& context)
 {
     interactions_.resize(leaves_.size());
-    return for_each_chunk(
-        context, leaves_.size(), leaves_per_chunk, [&](std::size_t begin, std::size_t end) {
-            std::vector<Index> open;
-            for (std::size_t l = begin; l < end; ++l) {
-                const Node& target = nodes_[leaves_[l]];
-                Interactions& found = interactions_[l];
-                open.assign(1, 0);
-                while (!open.empty()) {
-                    const Index n = open.back();
-                    open.pop_back();
-                    const Node& node = nodes_[n];
-                    const float dx = node.x - target.x, dy = node.y - target.y,
-                                dz = node.z - target.z;
-                    const float distance = std::sqrt(dx * dx + dy * dy + dz * dz);
-                    if (distance > opening * node.radius + target.radius) {
-                        found.nodes.push_back(n);
-                    } else if (node.child == 0) {
-                        found.leaves.push_back(n);
-                    } else {
-                        open.push_back(node.child + 1);
-                        open.push_back(node.child);
-                    }
-                }
-            }
-        });
+    return for_each_chunk(context, leaves_.size(), leaves_per_chunk,
+                          [&](std::size_t begin, std::size_t end) {
+                              std::vector<Index> open;
+                              for (std::size_t l = begin; l < end; ++l) {
+                                  const Node& target = nodes_[leaves_[l]];
+                                  Interactions& found = interactions_[l];
+                                  open.assign(1, 0);
+                                  while (!open.empty()) {
+                                      const Index n = open.back();
+                                      open.pop_back();
+                                      const Node& node = nodes_[n];
+                                      const float dx = node.x - target.x, dy = node.y - target.y,
+                                                  dz = node.z - target.z;
+                                      const float distance = std::sqrt(dx * dx + dy * dy + dz * dz);
+                                      if (distance > opening * node.radius + target.radius) {
+                                          found.nodes.push_back(n);
+                                      } else if (node.child == 0) {
+                                          found.leaves.push_back(n);
+                                      } else {
+                                          open.push_back(node.child + 1);
+                                          open.push_back(node.child);
+                                      }
+                                  }
+                              }
+                          });
 }
 
 void WindingTree::set_widths(const std::vector<double>& widths)
@@ -221,27 +221,26 @@ WindingTree::ChargeMoments WindingTree::charge_moments(const ScalarField& charge
 template <class Sources, class Store>
 void WindingTree::sum(const Sources& sources, const Context& context, const Store& store) const
 {
-    for_each_chunk(context, leaves_.size(), leaves_per_chunk,
-                   [&](std::size_t begin, std::size_t end) {
-                       for (std::size_t l = begin; l < end; ++l) {
-                           const Node& leaf = nodes_[leaves_[l]];
-                           Targets t;
-                           for (std::size_t k = 0; k < lanes; ++k) {
-                               const Index i = std::min(leaf.begin + static_cast<Index>(k),
-                                                        leaf.end - 1);
-                               t.x[k] = x_[i], t.y[k] = y_[i], t.z[k] = z_[i];
-                               t.softening[k] = softening_[i];
-                           }
-                           typename Sources::Sums sums{};
-                           for (const Index n : interactions_[l].leaves)
-                               for (Index i = nodes_[n].begin; i < nodes_[n].end; ++i)
-                                   sources.point(i, t, sums);
-                           for (const Index n : interactions_[l].nodes)
-                               sources.node(n, t, sums);
-                           for (Index i = leaf.begin; i < leaf.end; ++i)
-                               store(i, sums, i - leaf.begin);
-                       }
-                   });
+    for_each_chunk(
+        context, leaves_.size(), leaves_per_chunk, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t l = begin; l < end; ++l) {
+                const Node& leaf = nodes_[leaves_[l]];
+                Targets t;
+                for (std::size_t k = 0; k < lanes; ++k) {
+                    const Index i = std::min(leaf.begin + static_cast<Index>(k), leaf.end - 1);
+                    t.x[k] = x_[i], t.y[k] = y_[i], t.z[k] = z_[i];
+                    t.softening[k] = softening_[i];
+                }
+                typename Sources::Sums sums{};
+                for (const Index n : interactions_[l].leaves)
+                    for (Index i = nodes_[n].begin; i < nodes_[n].end; ++i)
+                        sources.point(i, t, sums);
+                for (const Index n : interactions_[l].nodes)
+                    sources.node(n, t, sums);
+                for (Index i = leaf.begin; i < leaf.end; ++i)
+                    store(i, sums, i - leaf.begin);
+            }
+        });
 }
 
 void WindingTree::winding(const VectorField& dipoles, ScalarField& result,
@@ -342,10 +341,11 @@ void WindingTree::adjoint(const ScalarField& charges, VectorField& result,
         }
     };
     result = VectorField(size());
-    sum(Sources{*this, charges, moments}, context, [&](Index i, const VectorSums& s, std::size_t k) {
-        constexpr auto f = static_cast<float>(quarter_pi_inverse);
-        result.x[i] = f * s.x[k], result.y[i] = f * s.y[k], result.z[i] = f * s.z[k];
-    });
+    sum(Sources{*this, charges, moments}, context,
+        [&](Index i, const VectorSums& s, std::size_t k) {
+            constexpr auto f = static_cast<float>(quarter_pi_inverse);
+            result.x[i] = f * s.x[k], result.y[i] = f * s.y[k], result.z[i] = f * s.z[k];
+        });
 }
 
 void WindingTree::outward(const VectorField& dipoles, VectorField& result,
@@ -397,10 +397,11 @@ void WindingTree::outward(const VectorField& dipoles, VectorField& result,
         }
     };
     result = VectorField(size());
-    sum(Sources{*this, dipoles, moments}, context, [&](Index i, const VectorSums& s, std::size_t k) {
-        constexpr auto f = static_cast<float>(quarter_pi_inverse);
-        result.x[i] = f * s.x[k], result.y[i] = f * s.y[k], result.z[i] = f * s.z[k];
-    });
+    sum(Sources{*this, dipoles, moments}, context,
+        [&](Index i, const VectorSums& s, std::size_t k) {
+            constexpr auto f = static_cast<float>(quarter_pi_inverse);
+            result.x[i] = f * s.x[k], result.y[i] = f * s.y[k], result.z[i] = f * s.z[k];
+        });
 }
 
 } // namespace bot2nurbs

@@ -4,6 +4,7 @@
 #include "bot2nurbs/detect_features.h"
 #include "bot2nurbs/domain_samples.h"
 #include "bot2nurbs/layout.h"
+#include "bot2nurbs/point_deviation.h"
 #include "convert/constraints_input.h"
 
 #include <algorithm>
@@ -109,6 +110,46 @@ std::vector<FeaturePath> feature_paths(const MeshFeatures& features)
     return paths;
 }
 
+//! What the surface is fitted to: the points, and the mesh where there are none.
+Result<SurfaceSampleSet> point_samples(const ManifoldMesh& unit,
+                                       const std::vector<QuadChart>& charts,
+                                       const ComponentPoints& points, const Frame& frame,
+                                       Index& anchors, Context& context)
+{
+    std::vector<Vec3> positions = points.points;
+    for (Vec3& p : positions)
+        p = frame.to_unit(p);
+    std::vector<double> weights = points.weights;
+    for (double& w : weights)
+        w /= frame.size * frame.size;
+    Result<SurfaceSampleSet> samples = project_samples(unit, charts, positions, weights, context);
+    if (!samples)
+        return samples;
+    const Result<Index> added = add_anchor_samples(unit, charts, *samples, context);
+    if (!added)
+        return added.error();
+    anchors = *added;
+    return samples;
+}
+
+//! Puts the points in the place of the mesh on the way to the surface.
+Status measure_points(const ComponentPoints& points, const QuadComplex& complex,
+                      ConvertedComponent& result, Context& context)
+{
+    Result<std::vector<double>> distances =
+        point_distances(points.points, complex, result.surface, context);
+    if (!distances)
+        return distances.error();
+    result.point_distances = std::move(*distances);
+    const PointDeviation d = summarise_distances(result.point_distances);
+    DistanceStatistics& side = result.outcome.deviation.source_to_surface;
+    side.max = d.max;
+    side.rms = d.rms;
+    side.samples = d.points;
+    side.worst = d.points > 0 ? points.points[d.worst] : Vec3{};
+    return std::nullopt;
+}
+
 void to_input_units(DistanceStatistics& s, const Frame& frame)
 {
     s.max *= frame.size;
@@ -152,6 +193,7 @@ void log_rounds(const FitSummary& fit, const Context& context)
 } // namespace
 
 Result<ConvertedComponent> convert_component(const MeshComponent& component, DomainWishes wishes,
+                                             const ComponentPoints* points,
                                              const ConvertOptions& options,
                                              const std::vector<KnotForm>& forms,
                                              const std::string& stage_suffix, Context& context)
@@ -172,7 +214,10 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
     outcome.diagonal = component.mesh.box().diagonal();
 
     stage("features");
-    Result<MeshFeatures> features = find_features(*unit, options, context);
+    // Edges of a mesh through points are the mesh's own: it rounds those of the body.
+    const bool seek_features = points == nullptr || options.features == FeatureMode::all;
+    Result<MeshFeatures> features =
+        seek_features ? find_features(*unit, options, context) : MeshFeatures{};
     if (!features)
         return features.error();
     outcome.features = describe(*features, component);
@@ -216,7 +261,9 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
         return result;
 
     stage("samples");
-    Result<SurfaceSampleSet> samples = make_samples(*unit, *charts, {}, context);
+    Result<SurfaceSampleSet> samples =
+        points != nullptr ? point_samples(*unit, *charts, *points, frame, result.anchors, context)
+                          : make_samples(*unit, *charts, {}, context);
     if (!samples)
         return samples.error();
 
@@ -227,7 +274,13 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
         build_spline_network(result.domain.complex, options.spline);
     if (!network)
         return network.error();
-    Result<FitResult> fit = fit_network(*network, *samples, options.fit, context);
+    FitOptions fit_options = options.fit;
+    if (points != nullptr) {
+        fit_options.robust = true;
+        fit_options.least_deviation = points->least_deviation / frame.size;
+        fit_options.noise = points->noise / frame.size;
+    }
+    Result<FitResult> fit = fit_network(*network, *samples, fit_options, context);
     if (!fit)
         return fit.error();
     outcome.fit = std::move(fit->summary);
@@ -248,12 +301,17 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
     outcome.continuity = measure_continuity(result.domain.complex, result.surface);
 
     stage("bound");
-    const Result<HausdorffBound> bound =
-        bound_hausdorff(component.mesh, result.domain.complex, result.surface, {}, context);
-    if (!bound)
-        return bound.error();
-    outcome.bound = *bound;
-    use_proven(outcome.deviation, *bound);
+    if (points != nullptr) {
+        if (Status failed = measure_points(*points, result.domain.complex, result, context))
+            return *failed;
+    } else {
+        const Result<HausdorffBound> bound =
+            bound_hausdorff(component.mesh, result.domain.complex, result.surface, {}, context);
+        if (!bound)
+            return bound.error();
+        outcome.bound = *bound;
+        use_proven(outcome.deviation, *bound);
+    }
 
     stage("brep");
     for (const KnotForm form : forms) {

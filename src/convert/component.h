@@ -5,6 +5,7 @@
 #include "bot2nurbs/domain_constraints.h"
 #include "bot2nurbs/quad_domain.h"
 #include "bot2nurbs/repair_mesh.h"
+#include "convert/cloud_input.h"
 
 #include <optional>
 #include <string>
@@ -19,6 +20,11 @@ struct ConvertedComponent {
     DomainConstraints constraints; //!< What the layout kept to and chose.
     SplineSurface surface;         //!< In the coordinates of the input.
     std::vector<Brep> breps;       //!< One for each of the knot forms asked for, in their order.
+
+    //! For an input of points: their distances from the surface, in units of the input, and the
+    //! samples of the mesh that stand in where there are no points.
+    std::vector<double> point_distances;
+    Index anchors = 0;
 };
 
 //! What the caller says of one component's domain.
@@ -27,9 +33,11 @@ struct DomainWishes {
     DomainConstraints constraints;      //!< Bind the automatic layout.
 };
 
-//! Converts one component. No knot forms asked for: stops after the domain. `stage_suffix` is added
-//! to the names of the stages.
+//! Converts one component. No knot forms asked for: stops after the domain. `points`, unless null,
+//! are what the surface is fitted to in place of the mesh. `stage_suffix` is added to the names of
+//! the stages.
 Result<ConvertedComponent> convert_component(const MeshComponent& component, DomainWishes wishes,
+                                             const ComponentPoints* points,
                                              const ConvertOptions& options,
                                              const std::vector<KnotForm>& forms,
                                              const std::string& stage_suffix, Context& context);

@@ -92,6 +92,12 @@ Error bad_option(std::string message)
 
 void add_input_warnings(const PreparedInput& input, ConvertReport& report)
 {
+    if (input.cloud) {
+        report.cloud = input.cloud->report;
+        report.repairs = input.cloud->notes;
+        for (Warning& warning : cloud_warnings(input.cloud->report))
+            report.warnings.push_back(std::move(warning));
+    }
     for (const RepairNote& note : input.mesh.notes) {
         if (note.warning)
             report.warnings.push_back({note.code, note.message, invalid_index});
@@ -147,6 +153,21 @@ void add_outcome_warnings(const ConvertOptions& options, ConvertReport& report)
                      ? "They are too short or too rough to be creases"
                      : "--features DEGREES keeps creases of that angle"),
              vertex});
+}
+
+//! Of all components together.
+void add_point_deviation(const std::vector<ConvertedComponent>& components, double diagonal,
+                         CloudReport& cloud)
+{
+    std::vector<double> distances;
+    for (const ConvertedComponent& c : components) {
+        distances.insert(distances.end(), c.point_distances.begin(), c.point_distances.end());
+        cloud.anchors += c.anchors;
+    }
+    cloud.deviation = summarise_distances(distances, expected_deviation(cloud));
+    for (const double relative : {1e-3, 3e-3, 1e-2})
+        cloud.within.push_back(
+            {relative * diagonal, relative, share_within(distances, relative * diagonal)});
 }
 
 struct PendingFile {
@@ -242,6 +263,10 @@ std::optional<Error> ConvertOptions::check() const
         return failed;
     if (std::optional<Error> failed = feature_options.check())
         return failed;
+    if (std::optional<Error> failed = cloud.orient.check())
+        return failed;
+    if (std::optional<Error> failed = cloud.reconstruct.check())
+        return failed;
     if (Status failed = write.check())
         return failed;
 
@@ -311,6 +336,15 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
     if (forms.empty() && options.tessellation)
         forms.push_back(form_of(Format::archive_3dm, options));
 
+    std::vector<ComponentPoints> points;
+    if (input->cloud) {
+        Result<std::vector<ComponentPoints>> shared =
+            points_of_components(*input->cloud, mesh, context);
+        if (!shared)
+            return shared.error();
+        points = std::move(*shared);
+    }
+
     std::vector<ConvertedComponent> components;
     const std::size_t count = mesh.components.size();
     for (std::size_t c = 0; c < count; ++c) {
@@ -319,8 +353,9 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
             wishes.supplied = std::move(supplied[c]);
         wishes.constraints = std::move(constraints[c]);
         const std::string suffix = count > 1 ? fmt::format(" {}/{}", c + 1, count) : "";
-        Result<ConvertedComponent> converted = convert_component(
-            mesh.components[c], std::move(wishes), options, forms, suffix, context);
+        Result<ConvertedComponent> converted =
+            convert_component(mesh.components[c], std::move(wishes),
+                              input->cloud ? &points[c] : nullptr, options, forms, suffix, context);
         if (!converted) {
             Error error = converted.error();
             if (count > 1 && error.code != ErrorCode::cancelled)
@@ -338,6 +373,8 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
     for (const ConvertedComponent& c : components)
         report.components.push_back(c.outcome);
     add_outcome_warnings(options, report);
+    if (report.cloud)
+        add_point_deviation(components, report.diagonal, *report.cloud);
     if (context.cancelled())
         return Context::cancelled_error("write");
     for (const PendingFile& pending : *files) {

@@ -2,6 +2,7 @@
 #include "convert/input.h"
 
 #include "bot2nurbs/read_mesh.h"
+#include "bot2nurbs/read_points.h"
 #include "mesh/boundary_loops.h"
 
 #include <algorithm>
@@ -84,9 +85,13 @@ std::optional<Error> refuse_self_intersections(const MeshReport& found)
                  f};
 }
 
-std::optional<Error> refuse(const ConvertOptions& options, const RepairedMesh& mesh,
-                            const MeshReport& found)
+//! `cloud` is what the mesh was made of, if it was.
+std::optional<Error> refuse(const ConvertOptions& options, const CloudReport* cloud,
+                            const RepairedMesh& mesh, const MeshReport& found)
 {
+    if (cloud != nullptr && options.closure == Closure::solid)
+        if (std::optional<Error> refused = refuse_cloud_solid(*cloud))
+            return refused;
     if (!options.repair)
         if (std::optional<Error> refused = refuse_repairs(mesh))
             return refused;
@@ -101,21 +106,35 @@ std::optional<Error> refuse(const ConvertOptions& options, const RepairedMesh& m
 struct LoadedInput {
     TriangleSoup soup;
     MeshReport found;
+    std::optional<CloudInput> cloud;
 };
 
-//! Stages "read" and "check"; begins the stage "repair".
+//! Stages "read" and "check", with those of a cloud between; begins the stage "repair".
 Result<LoadedInput> load_input(const ConvertOptions& options, Context& context)
 {
     context.begin_stage("read");
-    Result<TriangleSoup> soup = read_mesh(options.input, context);
-    if (!soup)
-        return soup.error();
+    LoadedInput loaded;
+    const Result<FileContent> content = file_content(options.input, context);
+    if (!content)
+        return content.error();
+    if (options.cloud.points || *content == FileContent::points) {
+        Result<CloudInput> cloud = load_cloud(options, context);
+        if (!cloud)
+            return cloud.error();
+        loaded.soup = std::move(cloud->mesh);
+        loaded.cloud = std::move(*cloud);
+    } else {
+        Result<TriangleSoup> soup = read_mesh(options.input, context);
+        if (!soup)
+            return soup.error();
+        loaded.soup = std::move(*soup);
+    }
     context.begin_stage("check");
-    MeshReport found = check_mesh(*soup, context);
+    loaded.found = check_mesh(loaded.soup, context);
     if (context.cancelled())
         return Context::cancelled_error("check");
     context.begin_stage("repair");
-    return LoadedInput{std::move(*soup), std::move(found)};
+    return loaded;
 }
 
 } // namespace
@@ -130,11 +149,13 @@ Result<PreparedInput> prepare_input(const ConvertOptions& options, Context& cont
     input.faces = static_cast<Index>(loaded->soup.triangles.size());
     input.units = loaded->soup.units;
     input.found = std::move(loaded->found);
+    input.cloud = std::move(loaded->cloud);
     Result<RepairedMesh> repaired = repair_mesh(std::move(loaded->soup), {}, context);
     if (!repaired)
         return repaired.error();
     input.mesh = std::move(*repaired);
-    if (std::optional<Error> refused = refuse(options, input.mesh, input.found))
+    if (std::optional<Error> refused =
+            refuse(options, input.cloud ? &input.cloud->report : nullptr, input.mesh, input.found))
         return *refused;
     return input;
 }
@@ -147,9 +168,12 @@ Result<InputReport> check_input(const ConvertOptions& options, Context& context)
     InputReport report;
     report.mesh = std::move(loaded->found);
     const Result<RepairedMesh> repaired = repair_mesh(std::move(loaded->soup), {}, context);
+    if (loaded->cloud)
+        report.cloud = loaded->cloud->report;
     if (repaired) {
         report.repairs = repaired->notes;
-        report.rejection = refuse(options, *repaired, report.mesh);
+        report.rejection =
+            refuse(options, report.cloud ? &*report.cloud : nullptr, *repaired, report.mesh);
     } else if (repaired.error().code == ErrorCode::cancelled) {
         return repaired.error();
     } else {

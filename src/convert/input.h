@@ -3,7 +3,9 @@
 
 #include "bot2nurbs/convert.h"
 #include "bot2nurbs/repair_mesh.h"
+#include "convert/cloud_input.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,11 +16,13 @@ struct PreparedInput {
     RepairedMesh mesh;
     MeshReport found; //!< Of the file as it is.
     Index vertices = 0, faces = 0;
-    std::string units; //!< As the file says; may be empty.
+    std::string units;               //!< As the file says; may be empty.
+    std::optional<CloudInput> cloud; //!< What the mesh was made of, its own mesh taken out.
 };
 
-//! Stages "read", "check" and "repair". Errors: those of read_mesh and repair_mesh, and
-//! bad_geometry where a repair is needed and options.repair is off; open_mesh; self_intersecting.
+//! Stages "read", "check" and "repair"; for a cloud of points those of load_cloud() come first.
+//! Errors: those of read_mesh, load_cloud() and repair_mesh, and bad_geometry where a repair is
+//! needed and options.repair is off; open_mesh; self_intersecting.
 Result<PreparedInput> prepare_input(const ConvertOptions& options, Context& context);
 
 } // namespace bot2nurbs

@@ -3,6 +3,7 @@
 
 #include "bot2nurbs/convert.h"
 #include "bot2nurbs/version.h"
+#include "convert/cloud_json.h"
 #include "io/atomic_file.h"
 
 #include <algorithm>
@@ -69,6 +70,7 @@ Json options_json(const ConvertOptions& o)
     j["domain_out"] = o.domain_out ? Json(*o.domain_out) : Json(nullptr);
     j["constraints"] = o.constraints ? Json(*o.constraints) : Json(nullptr);
     j["constraints_out"] = o.constraints_out ? Json(*o.constraints_out) : Json(nullptr);
+    j["cloud"] = cloud_options_json(o.cloud);
     j["units"] = o.write.units;
     j["archive_version"] = o.write.archive_version;
     j["step_schema"] = o.write.step_schema == StepSchema::ap242 ? "AP242" : "AP214";
@@ -275,7 +277,7 @@ Json input_json(const ConvertOptions& options, const ConvertReport& report)
     j["path"] = options.input;
     j["vertices"] = report.input_vertices;
     j["faces"] = report.input_faces;
-    j["points"] = 0;
+    j["points"] = report.cloud ? report.cloud->points : 0;
     j["units"] = report.units;
     j["components"] = Json::array();
     for (const ComponentOutcome& c : report.components)
@@ -435,6 +437,8 @@ std::string report_to_json(const ConvertOptions& options, const ConvertReport& r
         // No test of our own decides this yet; the report must not claim more.
         j["embedded"] = "undecided";
     }
+    if (report.cloud)
+        j["cloud"] = cloud_json(*report.cloud, fitted);
     j["features"] = features_json(report.components);
     j["components"] = Json::array();
     for (const ComponentOutcome& c : report.components)
@@ -500,6 +504,8 @@ std::string input_report_to_json(const ConvertOptions& options, const InputRepor
     j["repairs"] = Json::array();
     for (const RepairNote& note : report.repairs)
         j["repairs"].push_back(repair_json(note));
+    if (report.cloud)
+        j["cloud"] = cloud_json(*report.cloud, false);
     j["accepted"] = !report.rejection;
     if (report.rejection)
         j["rejection"] = error_json(*report.rejection);

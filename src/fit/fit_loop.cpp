@@ -26,6 +26,8 @@ constexpr double mu_floor = 1e-5;
 constexpr int least_rounds = 5;
 //! Fairness falls by this a round.
 const double fairness_decay = std::sqrt(0.1);
+//! With more fairness than this a surface is as smooth as it gets.
+constexpr double most_fairness = 1e2;
 //! A quad with this many samples, two for each of its unknowns, keeps the fairness at
 //! `sparse_fairness`; with four times as many the data alone decide down to 1e-7.
 constexpr double sparse_samples = 30.0;
@@ -137,7 +139,7 @@ void FitLoop::weigh_by_surface(const State& state)
             std::sqrt(std::max(speed[k], least_share * mean) * mean) / (places * 16.0 * area);
 }
 
-void FitLoop::lower_fairness(double share)
+void FitLoop::scale_fairness(double share)
 {
     last_level_ = level_;
     round_fairness_ = std::max(options_.fairness_floor, share * round_fairness_);
@@ -195,7 +197,8 @@ std::vector<double> FitLoop::robust_factors(const State& state) const
     std::vector<double> distance(points.size());
     for (std::size_t i = 0; i < points.size(); ++i)
         distance[i] = state.feet[i].distance;
-    const double deviation = std::max(mad_to_deviation * median(distance), least_deviation);
+    const double deviation =
+        std::max({mad_to_deviation * median(distance), least_deviation, options_.least_deviation});
     for (std::size_t i = 0; i < points.size(); ++i)
         if (distance[i] > huber * deviation)
             factors[i] = huber * deviation / distance[i];
@@ -286,9 +289,28 @@ Status FitLoop::first_round(State& state)
     return std::nullopt;
 }
 
+double FitLoop::rms_distance(const State& state) const
+{
+    double sum = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        sum += weights[i] * state.feet[i].distance * state.feet[i].distance;
+    return std::sqrt(sum);
+}
+
+Status FitLoop::raise_to_noise(State& state)
+{
+    while (rms_distance(state) < options_.noise && round_fairness_ < most_fairness) {
+        scale_fairness(1.0 / fairness_decay);
+        state = {};
+        if (const auto error = first_round(state))
+            return error;
+    }
+    return std::nullopt;
+}
+
 Status FitLoop::next_round(State& state, double& mu, bool& stuck)
 {
-    lower_fairness(fairness_decay);
+    scale_fairness(summary.rounds.back().rms > options_.noise ? fairness_decay : 1.0);
     const std::vector<double> factors = robust_factors(state);
     for (int answers = 0;;) {
         NormalSystem::Solution solution = solve(state, rows_at(state, factors), mu);
@@ -341,16 +363,14 @@ Status FitLoop::next_round(State& state, double& mu, bool& stuck)
 void FitLoop::record(const State& state, double mu, double start)
 {
     FitRound round;
-    double sum = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const FootPoint& foot = state.feet[i];
-        sum += weights[i] * foot.distance * foot.distance;
         round.max = std::max(round.max, foot.distance);
         if (foot.where.quad != where[i].quad)
             ++round.crossed;
         where[i] = foot.where;
     }
-    round.rms = std::sqrt(sum);
+    round.rms = rms_distance(state);
     round.fairness = round_fairness_;
     round.damping = mu;
     round.seconds = now() - start;
@@ -384,6 +404,8 @@ Status FitLoop::run()
     guard_ = FoldGuard(network_.complex.quad_count(), normals, where);
     if (const auto error = first_round(state))
         return error;
+    if (const auto error = raise_to_noise(state))
+        return error;
     weigh_by_surface(state);
     if (!guard_.ready()) {
         guard_.set_reference(state.surface);
@@ -401,9 +423,10 @@ Status FitLoop::run()
         if (const auto error = next_round(state, mu, stuck))
             return error;
         record(state, mu, start);
-        const bool schedule_done =
-            (!tangent || mu <= mu_floor) && round_fairness_ <= options_.fairness_floor;
         const double after = summary.rounds.back().rms;
+        const bool fairness_done =
+            round_fairness_ <= options_.fairness_floor || after <= options_.noise;
+        const bool schedule_done = (!tangent || mu <= mu_floor) && fairness_done;
         // A stuck round leaves the surface as it is; with less fairness the next may do more.
         if (round + 1 >= least_rounds &&
             (stuck || (schedule_done && after >= (1.0 - options_.stall) * before))) {

@@ -64,7 +64,10 @@ private:
     //! vertices, where parameters crowd.
     void weigh_by_surface(const State& state);
     //! Fairness of all quads `share` times the last round's, but not below their floors.
-    void lower_fairness(double share);
+    void scale_fairness(double share);
+    //! Repeats the first round with more fairness while the surface follows the noise.
+    Status raise_to_noise(State& state);
+    double rms_distance(const State& state) const;
     void apply_fairness();
     void record(const State& state, double mu, double start);
 

@@ -54,6 +54,10 @@ std::optional<Error> FitOptions::check() const
         return bad("fit: fairness must be positive");
     if (!(fairness_floor > 0.0) || fairness_floor > fairness)
         return bad("fit: fairness_floor must be positive and at most fairness");
+    if (!(noise >= 0.0) || !std::isfinite(noise))
+        return bad("fit: noise must not be negative");
+    if (!(least_deviation >= 0.0) || !std::isfinite(least_deviation))
+        return bad("fit: least_deviation must not be negative");
     if (!(stall >= 0.0 && stall < 1.0))
         return bad("fit: stall must be in [0, 1)");
     if (!(condition_limit >= 1.0))

@@ -43,8 +43,7 @@ inline SampledSurface torus_points(std::size_t n, double ring = 1.0, double tube
         if (uniform(random) * (ring + tube) > width)
             continue;
         s.points.push_back({width * std::cos(u), width * std::sin(u), tube * std::sin(v)});
-        s.normals.push_back(
-            {std::cos(v) * std::cos(u), std::cos(v) * std::sin(u), std::sin(v)});
+        s.normals.push_back({std::cos(v) * std::cos(u), std::cos(v) * std::sin(u), std::sin(v)});
     }
     return s;
 }

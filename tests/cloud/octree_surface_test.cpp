@@ -100,8 +100,9 @@ TEST(OctreeSurface, a_sphere_across_cells_of_many_sizes_is_a_closed_mesh_of_genu
 {
     for (unsigned seed = 1; seed <= 8; ++seed) {
         const Octree tree = uneven_tree(seed, 7);
-        const auto f = function_on(
-            tree, [](const Vec3& p) { return 0.3 - norm(p - Vec3{0.49, 0.51, 0.5}); });
+        const auto f = function_on(tree, [](const Vec3& p) {
+            return 0.3 - norm(p - Vec3{0.49, 0.51, 0.5});
+        });
         Context context;
         const auto soup = octree_surface(tree, f, context);
         ASSERT_TRUE(soup);
@@ -125,7 +126,8 @@ TEST(OctreeSurface, random_values_give_a_closed_manifold_mesh)
         std::uniform_real_distribution<double> uniform(-1.0, 1.0);
         const auto f = function_on(tree, [&](const Vec3& p) {
             const double value = uniform(random);
-            const bool border = std::min({p.x, p.y, p.z}) <= 0.0 || std::max({p.x, p.y, p.z}) >= 1.0;
+            const bool border =
+                std::min({p.x, p.y, p.z}) <= 0.0 || std::max({p.x, p.y, p.z}) >= 1.0;
             return border ? -1.0 : value;
         });
         Context context;

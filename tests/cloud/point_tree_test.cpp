@@ -29,7 +29,8 @@ std::vector<PointTree::Neighbor> brute_force(const std::vector<Vec3>& points, co
     return all;
 }
 
-TEST(PointTree, nearest_points_are_as_near_as_those_of_brute_force_in_the_order_of_distance_and_number)
+TEST(PointTree,
+     nearest_points_are_as_near_as_those_of_brute_force_in_the_order_of_distance_and_number)
 {
     const auto points = grid_points(600);
     Context context;

@@ -28,8 +28,7 @@ Case reconstructed(const std::vector<Vec3>& points, const ReconstructOptions& op
     EXPECT_TRUE(oriented);
     if (!normals.empty())
         estimate->normals = normals;
-    auto result =
-        reconstruct_surface(points, *estimate, oriented->disagreement, options, context);
+    auto result = reconstruct_surface(points, *estimate, oriented->disagreement, options, context);
     EXPECT_TRUE(result) << result.error().message;
     Case c;
     c.result = std::move(result.value());

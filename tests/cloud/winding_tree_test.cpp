@@ -104,8 +104,7 @@ TEST_F(WindingTreeSums, outward_is_the_negated_gradient_of_the_winding_number)
                 for (std::size_t j = 0; j < tree->size(); ++j) {
                     // The field of the point itself stays where it was.
                     const Vec3 r = pairs.points[j] - moved.points[i];
-                    const double r2 =
-                        norm_squared(r) + pairs.softening[i] + pairs.softening[j];
+                    const double r2 = norm_squared(r) + pairs.softening[i] + pairs.softening[j];
                     values[side] += dot(pairs.dipoles[j], r) / (4.0 * pi * r2 * std::sqrt(r2));
                 }
             }

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+#include "convert/cloud_input.h"
+
+#include "bot2nurbs/closest_point.h"
+#include "bot2nurbs/read_points.h"
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <utility>
+
+namespace bot2nurbs {
+
+namespace {
+
+constexpr std::size_t points_per_chunk = 256;
+constexpr double detail_spacings = 0.25;
+
+std::string place_text(const Vec3& p)
+{
+    return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z);
+}
+
+//! The points that take part in the fit: no outliers, and none without weight.
+void choose_points(const CleanPoints& clean, const SurfaceEstimate& estimate, CloudInput& cloud)
+{
+    for (std::size_t i = 0; i < clean.positions.size(); ++i) {
+        cloud.report.outliers += estimate.outlier[i] != 0;
+        const double weight = estimate.confidence[i] * estimate.spacing[i] * estimate.spacing[i];
+        if (estimate.outlier[i] != 0 || !(weight > 0.0))
+            continue;
+        cloud.points.push_back(clean.positions[i]);
+        cloud.weights.push_back(weight);
+    }
+    cloud.report.fitted = static_cast<Index>(cloud.points.size());
+}
+
+void add_notes(const CloudReport& r, std::vector<RepairNote>& notes)
+{
+    const auto add = [&](const char* code, Index count, const std::string& what) {
+        if (count > 0)
+            notes.push_back({code, fmt::format("{} {}", count, what), count, false});
+    };
+    add("not_finite_points", r.not_finite, "points are not finite: dropped");
+    add("duplicate_points", r.duplicates, "points lie where others do: merged");
+    add("outliers", r.outliers, "points lie far from where their neighbours lie: left out");
+    add("missing_normals", r.normals.filled_in, "points have no normal: estimated");
+}
+
+std::string joined(const std::vector<std::string>& parts)
+{
+    std::string text;
+    for (const std::string& part : parts)
+        text += (text.empty() ? "" : "; ") + part;
+    return text;
+}
+
+} // namespace
+
+Result<CloudInput> load_cloud(const ConvertOptions& options, Context& context)
+{
+    context.begin_stage("read");
+    const Result<PointCloud> cloud = read_points(options.input, context);
+    if (!cloud)
+        return cloud.error();
+    const Result<CleanPoints> clean = clean_points(*cloud, context);
+    if (!clean)
+        return clean.error();
+
+    context.begin_stage("normals");
+    OrientOptions orient = options.cloud.orient;
+    if (!orient.viewpoint)
+        orient.viewpoint = cloud->viewpoint;
+    const Result<CloudNormals> normals =
+        find_normals(*clean, options.cloud.normals, orient, context);
+    if (!normals)
+        return normals.error();
+
+    context.begin_stage("reconstruct");
+    const SurfaceEstimate& estimate = normals->estimate;
+    Result<Reconstruction> surface =
+        reconstruct_surface(clean->positions, estimate, normals->report.disagreement,
+                            options.cloud.reconstruct, context);
+    if (!surface)
+        return surface.error();
+
+    CloudInput input;
+    CloudReport& report = input.report;
+    report.points = static_cast<Index>(cloud->size());
+    report.not_finite = clean->not_finite;
+    report.duplicates = clean->duplicates;
+    report.normals = normals->report;
+    report.spacing = estimate.median_spacing;
+    report.noise = estimate.noise;
+    report.noise_ratio = estimate.noise_ratio;
+    report.topology = surface->topology;
+    report.evidence = std::move(surface->evidence);
+    input.mesh = std::move(surface->mesh);
+    choose_points(*clean, estimate, input);
+    add_notes(report, input.notes);
+    return input;
+}
+
+std::optional<Error> refuse_cloud_solid(const CloudReport& report)
+{
+    if (report.topology == CloudTopology::uncertain)
+        return Error{ErrorCode::open_mesh,
+                     fmt::format("the points do not decide the topology of a solid: {}. Leave out "
+                                 "--solid to take the surface as it is",
+                                 joined(report.evidence.doubts)),
+                     invalid_index};
+    if (report.topology != CloudTopology::open)
+        return std::nullopt;
+    const CloudHole& hole = report.evidence.holes.front();
+    return Error{ErrorCode::open_mesh,
+                 fmt::format("the points do not close: {:.1f} % of the closed surface has none near "
+                             "it; the largest hole, {:.4g} across, is at {}. Leave out --solid for "
+                             "an open surface, or let --fill-holes close larger holes",
+                             100.0 * report.evidence.uncovered_area, hole.size,
+                             place_text(hole.place)),
+                 invalid_index};
+}
+
+std::vector<Warning> cloud_warnings(const CloudReport& r)
+{
+    std::vector<Warning> warnings;
+    if (r.normals.file_has_normals && !r.normals.given)
+        warnings.push_back(
+            {"normals_estimated",
+             fmt::format("{:.1f} % of the file's normals contradict those beside them, {:.1f} % "
+                         "point to the other side than estimated: estimated ones are used. "
+                         "--normals given takes them as they are",
+                         100.0 * r.normals.given_contradicted, 100.0 * r.normals.given_flipped),
+             invalid_index});
+    if (r.topology == CloudTopology::uncertain)
+        warnings.push_back({"uncertain_topology",
+                            "the points do not decide the topology: " + joined(r.evidence.doubts),
+                            invalid_index});
+    const auto filled = static_cast<Index>(
+        std::count_if(r.evidence.holes.begin(), r.evidence.holes.end(),
+                      [](const CloudHole& hole) { return hole.filled; }));
+    if (filled > 0) {
+        const auto& hole = *std::find_if(r.evidence.holes.begin(), r.evidence.holes.end(),
+                                         [](const CloudHole& h) { return h.filled; });
+        warnings.push_back(
+            {"holes_filled",
+             fmt::format("{} place{} without points {} closed; the largest, {:.4g} across, is at "
+                         "{}. --fill-holes 0 leaves them open",
+                         filled, filled == 1 ? "" : "s", filled == 1 ? "is" : "are", hole.size,
+                         place_text(hole.place)),
+             invalid_index});
+    }
+    if (r.evidence.dropped_components > 0)
+        warnings.push_back({"dropped_components",
+                            fmt::format("{} small pieces of the surface with few points near them "
+                                        "are left out",
+                                        r.evidence.dropped_components),
+                            invalid_index});
+    return warnings;
+}
+
+double expected_deviation(const CloudReport& report)
+{
+    return std::max(report.noise, detail_spacings * report.spacing);
+}
+
+Result<std::vector<ComponentPoints>> points_of_components(const CloudInput& cloud,
+                                                          const RepairedMesh& mesh,
+                                                          Context& context)
+{
+    std::vector<Vec3> positions;
+    std::vector<std::array<Index, 3>> triangles;
+    std::vector<Index> component; // per triangle
+    for (Index c = 0; c < mesh.components.size(); ++c) {
+        const ManifoldMesh& m = mesh.components[c].mesh;
+        const Index shift = static_cast<Index>(positions.size());
+        positions.insert(positions.end(), m.positions().begin(), m.positions().end());
+        for (const auto& t : m.triangles())
+            triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+        component.resize(triangles.size(), c);
+    }
+    const ClosestPoint closest(positions, triangles);
+    std::vector<Index> nearest(cloud.points.size());
+    if (!for_each_chunk(context, nearest.size(), points_per_chunk,
+                        [&](std::size_t begin, std::size_t end) {
+                            for (std::size_t i = begin; i < end; ++i)
+                                nearest[i] = component[closest.query(cloud.points[i]).where.face];
+                        }))
+        return Context::cancelled_error("sampling");
+    std::vector<ComponentPoints> result(mesh.components.size());
+    for (ComponentPoints& points : result) {
+        points.least_deviation = expected_deviation(cloud.report);
+        points.noise = cloud.report.noise;
+    }
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+        result[nearest[i]].points.push_back(cloud.points[i]);
+        result[nearest[i]].weights.push_back(cloud.weights[i]);
+    }
+    return result;
+}
+
+} // namespace bot2nurbs

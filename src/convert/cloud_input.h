@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bot2nurbs/cloud_report.h"
+#include "bot2nurbs/convert.h"
+#include "bot2nurbs/repair_mesh.h"
+
+#include <optional>
+#include <vector>
+
+namespace bot2nurbs {
+
+//! A cloud that was read: a mesh for topology and first parameters, and the points to fit to.
+struct CloudInput {
+    TriangleSoup mesh;
+    std::vector<Vec3> points;    //!< Without those that are not fitted to.
+    std::vector<double> weights; //!< Confidence times the area a point stands for.
+    std::vector<RepairNote> notes;
+    CloudReport report;
+};
+
+//! Stages "read", "normals" and "reconstruct". Errors: those of read_points, clean_points,
+//! find_normals and reconstruct_surface.
+Result<CloudInput> load_cloud(const ConvertOptions& options, Context& context);
+
+//! Why the points do not support a solid, with the region and the option that helps.
+std::optional<Error> refuse_cloud_solid(const CloudReport& report);
+
+//! What to warn of.
+std::vector<Warning> cloud_warnings(const CloudReport& report);
+
+//! The points that lie nearest to one component.
+struct ComponentPoints {
+    std::vector<Vec3> points;
+    std::vector<double> weights;
+    double least_deviation = 0.0; //!< See expected_deviation().
+    double noise = 0.0;           //!< Of all points.
+};
+
+//! Standard deviation of the points from a surface through them that is to be expected at least: of
+//! the noise, or where there is little a quarter of the spacing. A surface of few patches does not
+//! meet points more closely, and a point that is no nearer is an outlier, not a detail.
+double expected_deviation(const CloudReport& report);
+
+//! Shares the points out. Errors: cancelled.
+Result<std::vector<ComponentPoints>> points_of_components(const CloudInput& cloud,
+                                                          const RepairedMesh& mesh,
+                                                          Context& context);
+
+} // namespace bot2nurbs
