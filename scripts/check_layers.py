@@ -29,6 +29,7 @@ PUBLIC_HEADERS = {
     "repair_mesh": "mesh",
     "closest_point": "mesh",
     "detect_features": "mesh",
+    "fill_holes": "mesh",
     "surface_samples": "mesh",
     "map_level": "maps",
     "quad_complex": "domain",
@@ -46,6 +47,7 @@ PUBLIC_HEADERS = {
     "brep": "brep",
     "read_mesh": "io",
     "write_brep": "io",
+    "curve_deviation": "convert",
     "report": "convert",
     "convert": "convert",
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bot2nurbs/brep.h"
+#include "bot2nurbs/curve_deviation.h"
 #include "bot2nurbs/deviation.h"
 #include "bot2nurbs/fit_network.h"
 #include "bot2nurbs/hausdorff_bound.h"
@@ -61,6 +62,7 @@ struct ComponentOutcome {
     FitSummary fit;                      //!< Distances in units of the input.
     Deviation deviation;                 //!< In units of the input.
     std::optional<HausdorffBound> bound; //!< Of the surface as written against the input.
+    CurveDeviations curves;              //!< In units of the input.
     Continuity continuity;               //!< Of the surface as written.
     BrepReport brep;
     Index brep_faces = 0, brep_edges = 0, brep_vertices = 0;
