@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <fmt/format.h>
+#include <string>
 #include <utility>
 
 namespace bot2nurbs {
@@ -18,8 +19,8 @@ constexpr std::size_t most_edges = 500;
 
 using Triangles = std::vector<std::array<Index, 3>>;
 
-// The triangulation of a polygon with the least area: the best one of the part i .. j, closed by the
-// diagonal i j, consists of a triangle i k j and the best ones of i .. k and k .. j.
+// The triangulation of a polygon with the least area: the best one of the part i .. j, closed by
+// the diagonal i j, consists of a triangle i k j and the best ones of i .. k and k .. j.
 class LeastArea {
 public:
     LeastArea(const ManifoldMesh& mesh, const std::vector<Index>& loop)
@@ -99,6 +100,14 @@ double extent(const ManifoldMesh& mesh, const std::vector<Index>& loop)
     return box.diagonal();
 }
 
+std::string number(double x)
+{
+    char digits[32];
+    const auto end =
+        std::to_chars(digits, digits + sizeof digits, x, std::chars_format::general, 6).ptr;
+    return {digits, end};
+}
+
 // The first vertex of a loop in the numbering of the soup.
 Index first_vertex(const MeshComponent& component, const std::vector<Index>& loop)
 {
@@ -146,10 +155,10 @@ Result<Index> fill(MeshComponent& component, double size, std::vector<RepairNote
         if (loop.size() > most_edges || !LeastArea(mesh, loop).solve(triangles))
             add_fan(loop, positions, triangles);
         notes.push_back({"hole_filled",
-                         fmt::format("the hole at vertex {} was filled: {} edges, {:.6g} across, {} "
-                                     "triangles added",
-                                     first_vertex(component, loop), loop.size(), diagonal,
-                                     triangles.size() - before),
+                         "the hole at vertex " + std::to_string(first_vertex(component, loop)) +
+                             " was filled: " + std::to_string(loop.size()) + " edges, " +
+                             number(diagonal) + " across, " +
+                             std::to_string(triangles.size() - before) + " triangles added",
                          static_cast<Index>(loop.size()), false});
     }
     if (triangles.size() == mesh.face_count())
@@ -177,7 +186,7 @@ Status fill_holes(RepairedMesh& mesh, double size, const Context& context)
 {
     if (!(size >= 0.0) || !std::isfinite(size))
         return Error{ErrorCode::bad_option,
-                     fmt::format("the size of holes to fill must not be negative: {}", size),
+                     "the size of holes to fill must not be negative: " + number(size),
                      invalid_index};
     Index left = 0;
     for (MeshComponent& component : mesh.components) {
@@ -188,9 +197,8 @@ Status fill_holes(RepairedMesh& mesh, double size, const Context& context)
     }
     if (left > 0)
         mesh.notes.push_back({"hole_left",
-                              fmt::format("{} boundary loops are larger than {:.6g} across and stay "
-                                          "open",
-                                          left, size),
+                              std::to_string(left) + " boundary loops are larger than " +
+                                  number(size) + " across and stay open",
                               left, true});
     return {};
 }
