@@ -3,6 +3,7 @@
 
 #include "bot2nurbs/brep.h"
 #include "bot2nurbs/cloud_report.h"
+#include "bot2nurbs/curve_deviation.h"
 #include "bot2nurbs/deviation.h"
 #include "bot2nurbs/fit_network.h"
 #include "bot2nurbs/hausdorff_bound.h"
@@ -64,6 +65,7 @@ struct ComponentOutcome {
     //! surface, and the mesh through them on the way back.
     Deviation deviation;
     std::optional<HausdorffBound> bound; //!< Of the surface as written against the input.
+    CurveDeviations curves;              //!< In units of the input.
     Continuity continuity;               //!< Of the surface as written.
     BrepReport brep;
     Index brep_faces = 0, brep_edges = 0, brep_vertices = 0;

@@ -28,12 +28,12 @@ Result<std::vector<double>> point_distances(const std::vector<Vec3>& points,
         return Error{ErrorCode::empty_input, "no surface to measure from", invalid_index};
     const SurfaceLocator locator(complex, surface, seed_cells, &context);
     std::vector<double> distances(points.size());
-    if (context.cancelled() ||
-        !for_each_chunk(context, points.size(), points_per_chunk,
-                        [&](std::size_t begin, std::size_t end) {
-                            for (std::size_t i = begin; i < end; ++i)
-                                distances[i] = locator.closest(points[i]).distance;
-                        }))
+    if (context.cancelled() || !for_each_chunk(context, points.size(), points_per_chunk,
+                                               [&](std::size_t begin, std::size_t end) {
+                                                   for (std::size_t i = begin; i < end; ++i)
+                                                       distances[i] =
+                                                           locator.closest(points[i]).distance;
+                                               }))
         return Context::cancelled_error("deviation");
     return distances;
 }
@@ -49,15 +49,15 @@ PointDeviation summarise_distances(const std::vector<double>& distances, double 
     std::sort(sorted.begin(), sorted.end());
     d.max = sorted.back();
     d.median = sorted[n / 2];
-    d.percentile_95 = sorted[std::min(n - 1, static_cast<std::size_t>(std::ceil(0.95 * double(n))))];
+    d.percentile_95 =
+        sorted[std::min(n - 1, static_cast<std::size_t>(std::ceil(0.95 * double(n))))];
     d.worst = static_cast<Index>(std::max_element(distances.begin(), distances.end()) -
                                  distances.begin());
     double sum = 0.0;
     for (const double x : distances)
         sum += x * x;
     d.rms = std::sqrt(sum / double(n));
-    const double limit =
-        far_deviations * std::max(median_to_deviation * d.median, least_deviation);
+    const double limit = far_deviations * std::max(median_to_deviation * d.median, least_deviation);
     d.far_points =
         static_cast<Index>(sorted.end() - std::upper_bound(sorted.begin(), sorted.end(), limit));
     return d;
@@ -67,8 +67,8 @@ double share_within(const std::vector<double>& distances, double limit)
 {
     if (distances.empty())
         return 1.0;
-    const auto count = std::count_if(distances.begin(), distances.end(),
-                                     [limit](double d) { return d <= limit; });
+    const auto count =
+        std::count_if(distances.begin(), distances.end(), [limit](double d) { return d <= limit; });
     return double(count) / double(distances.size());
 }
 

@@ -21,6 +21,14 @@ std::string place_text(const Vec3& p)
     return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z);
 }
 
+double diagonal_of(const std::vector<Vec3>& points)
+{
+    Box3 box;
+    for (const Vec3& p : points)
+        box.add(p);
+    return box.diagonal();
+}
+
 //! The points that take part in the fit: no outliers, and none without weight.
 void choose_points(const CleanPoints& clean, const SurfaceEstimate& estimate, CloudInput& cloud)
 {
@@ -78,9 +86,13 @@ Result<CloudInput> load_cloud(const ConvertOptions& options, Context& context)
 
     context.begin_stage("reconstruct");
     const SurfaceEstimate& estimate = normals->estimate;
-    Result<Reconstruction> surface =
-        reconstruct_surface(clean->positions, estimate, normals->report.disagreement,
-                            options.cloud.reconstruct, context);
+    ReconstructOptions reconstruct = options.cloud.reconstruct;
+    if (options.fill_holes) {
+        const double diagonal = diagonal_of(clean->positions);
+        reconstruct.fill_holes = std::min(options.fill_holes->of(diagonal) / diagonal, 1.0);
+    }
+    Result<Reconstruction> surface = reconstruct_surface(
+        clean->positions, estimate, normals->report.disagreement, reconstruct, context);
     if (!surface)
         return surface.error();
 
@@ -112,13 +124,13 @@ std::optional<Error> refuse_cloud_solid(const CloudReport& report)
     if (report.topology != CloudTopology::open)
         return std::nullopt;
     const CloudHole& hole = report.evidence.holes.front();
-    return Error{ErrorCode::open_mesh,
-                 fmt::format("the points do not close: {:.1f} % of the closed surface has none near "
-                             "it; the largest hole, {:.4g} across, is at {}. Leave out --solid for "
-                             "an open surface, or let --fill-holes close larger holes",
-                             100.0 * report.evidence.uncovered_area, hole.size,
-                             place_text(hole.place)),
-                 invalid_index};
+    return Error{
+        ErrorCode::open_mesh,
+        fmt::format("the points do not close: {:.1f} % of the closed surface has none near "
+                    "it; the largest hole, {:.4g} across, is at {}. Leave out --solid for "
+                    "an open surface, or let --fill-holes close larger holes",
+                    100.0 * report.evidence.uncovered_area, hole.size, place_text(hole.place)),
+        invalid_index};
 }
 
 std::vector<Warning> cloud_warnings(const CloudReport& r)
@@ -136,9 +148,9 @@ std::vector<Warning> cloud_warnings(const CloudReport& r)
         warnings.push_back({"uncertain_topology",
                             "the points do not decide the topology: " + joined(r.evidence.doubts),
                             invalid_index});
-    const auto filled = static_cast<Index>(
-        std::count_if(r.evidence.holes.begin(), r.evidence.holes.end(),
-                      [](const CloudHole& hole) { return hole.filled; }));
+    const auto filled =
+        static_cast<Index>(std::count_if(r.evidence.holes.begin(), r.evidence.holes.end(),
+                                         [](const CloudHole& hole) { return hole.filled; }));
     if (filled > 0) {
         const auto& hole = *std::find_if(r.evidence.holes.begin(), r.evidence.holes.end(),
                                          [](const CloudHole& h) { return h.filled; });
@@ -164,9 +176,8 @@ double expected_deviation(const CloudReport& report)
     return std::max(report.noise, detail_spacings * report.spacing);
 }
 
-Result<std::vector<ComponentPoints>> points_of_components(const CloudInput& cloud,
-                                                          const RepairedMesh& mesh,
-                                                          Context& context)
+Result<std::vector<ComponentPoints>>
+points_of_components(const CloudInput& cloud, const RepairedMesh& mesh, Context& context)
 {
     std::vector<Vec3> positions;
     std::vector<std::array<Index, 3>> triangles;

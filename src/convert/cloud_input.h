@@ -43,8 +43,7 @@ struct ComponentPoints {
 double expected_deviation(const CloudReport& report);
 
 //! Shares the points out. Errors: cancelled.
-Result<std::vector<ComponentPoints>> points_of_components(const CloudInput& cloud,
-                                                          const RepairedMesh& mesh,
-                                                          Context& context);
+Result<std::vector<ComponentPoints>>
+points_of_components(const CloudInput& cloud, const RepairedMesh& mesh, Context& context);
 
 } // namespace bot2nurbs

@@ -171,6 +171,13 @@ void use_proven(Deviation& sampled, const HausdorffBound& proven)
     }
 }
 
+void to_input_units(CurveDeviation& c, const Frame& frame)
+{
+    c.length *= frame.size;
+    to_input_units(c.source_to_surface, frame);
+    to_input_units(c.surface_to_source, frame);
+}
+
 void to_input_units(FitSummary& fit, const Frame& frame)
 {
     for (FitRound& round : fit.rounds) {
@@ -295,6 +302,11 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
     outcome.deviation = *deviation;
     to_input_units(outcome.deviation.source_to_surface, frame);
     to_input_units(outcome.deviation.surface_to_source, frame);
+    outcome.curves = measure_curves(result.domain, fit->surface);
+    for (CurveDeviation& loop : outcome.curves.boundary)
+        to_input_units(loop, frame);
+    if (outcome.curves.creases)
+        to_input_units(*outcome.curves.creases, frame);
     result.surface = std::move(fit->surface);
     result.surface.transform(frame.size, frame.centre);
     // Of the coordinates that are written: rounding far from the origin is part of the result.

@@ -7,7 +7,9 @@
 #include "io/atomic_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace bot2nurbs {
@@ -56,6 +58,14 @@ const char* knots_name(const std::optional<KnotForm>& knots)
     return *knots == KnotForm::paper ? "paper" : "c1";
 }
 
+constexpr std::array<const char*, 3> component_names{"all", "largest", "split"};
+
+std::string length_text(const Length& length)
+{
+    return length.relative ? fmt::format("{:g}%", 100.0 * length.value)
+                           : fmt::format("{:g}", length.value);
+}
+
 Json options_json(const ConvertOptions& o)
 {
     Json j;
@@ -64,6 +74,8 @@ Json options_json(const ConvertOptions& o)
     j["knots"] = knots_name(o.knots);
     j["rounds"] = o.fit.max_rounds;
     j["robust"] = o.fit.robust;
+    j["components"] = component_names[static_cast<std::size_t>(o.components)];
+    j["fill_holes"] = o.fill_holes ? Json(length_text(*o.fill_holes)) : Json(nullptr);
     j["repair"] = o.repair;
     j["strict"] = o.strict;
     j["domain_in"] = o.domain_in ? Json(*o.domain_in) : Json(nullptr);
@@ -232,6 +244,14 @@ Json quality_json(const LayoutQuality& q)
             {"straightness", spread_json(q.straightness)}};
 }
 
+Json curve_json(const CurveDeviation& c)
+{
+    return {{"edges", c.edges},
+            {"length", c.length},
+            {"source_to_surface", side_json(c.source_to_surface)},
+            {"surface_to_source", side_json(c.surface_to_source)}};
+}
+
 Json component_json(const ComponentOutcome& c, const std::string& unit)
 {
     Json j;
@@ -254,6 +274,11 @@ Json component_json(const ComponentOutcome& c, const std::string& unit)
         j["deviation"]["worst_patch"] = index_or_null(c.deviation.worst_patch);
         if (c.bound)
             add_bound(j["deviation"], *c.bound);
+        j["boundary"] = Json::array();
+        for (const CurveDeviation& loop : c.curves.boundary)
+            j["boundary"].push_back(curve_json(loop));
+        if (c.curves.creases)
+            j["creases"] = curve_json(*c.curves.creases);
         j["continuity"] = continuity_json(c.continuity);
         j["brep"] = brep_json(c.brep_faces, c.brep_edges, c.brep_vertices, c.brep);
     }
