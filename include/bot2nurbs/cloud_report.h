@@ -30,6 +30,7 @@ struct CloudReport {
     Index not_finite = 0; //!< Dropped.
     Index duplicates = 0; //!< Merged with others.
     Index outliers = 0;   //!< Left out of mesh, fit and statistics.
+    Index off_mesh = 0;   //!< Left out of fit and statistics: no part of the mesh is near them.
     Index fitted = 0;     //!< What the surface was fitted to.
     Index anchors = 0;    //!< Samples of the mesh where patches have no points.
 

@@ -64,7 +64,7 @@ struct Reconstruction {
 //! Reconstructs a surface from oriented points: that of screened Poisson reconstruction
 //! \cite kazhdan_2013, which is closed, opened where there are no points.
 //!
-//! A place farther than 2.5 spacings from every point (and three deviations of the noise) lies in a
+//! A place farther than 2.2 spacings from every point (and three deviations of the noise) lies in a
 //! hole, which reaches out to 1.5 spacings from the points. Holes larger than options.fill_holes
 //! are cut out. Components with fewer than 30 points near them, or more than half without any, are
 //! dropped (never the one with most points).

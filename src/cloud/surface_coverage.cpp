@@ -15,8 +15,8 @@ namespace bot2nurbs {
 namespace {
 
 //! A place farther than this from all points lies in a hole: points scattered evenly leave a disk
-//! of so many spacings' radius empty with a chance of 3e-9.
-constexpr double hole_spacings = 2.0;
+//! of so many spacings' radius empty with a chance of 2.5e-7.
+constexpr double hole_spacings = 2.2;
 //! A hole reaches out to where the points begin. Beside a hole a place so far from them is beyond
 //! the last ones, with a chance of 1e-3 to be wrong, and then by one gap between points.
 constexpr double rim_spacings = 1.5;

@@ -15,6 +15,9 @@ namespace {
 
 constexpr std::size_t points_per_chunk = 256;
 constexpr double detail_spacings = 0.25;
+//! A mesh through points passes within about a spacing of each, and the noise; a point farther than
+//! this from it shows something that it leaves out.
+constexpr double reach_spacings = 3.0, reach_deviations = 4.0;
 
 std::string place_text(const Vec3& p)
 {
@@ -39,6 +42,7 @@ void choose_points(const CleanPoints& clean, const SurfaceEstimate& estimate, Cl
             continue;
         cloud.points.push_back(clean.positions[i]);
         cloud.weights.push_back(weight);
+        cloud.spacing.push_back(estimate.spacing[i]);
     }
     cloud.report.fitted = static_cast<Index>(cloud.points.size());
 }
@@ -176,8 +180,9 @@ double expected_deviation(const CloudReport& report)
     return std::max(report.noise, detail_spacings * report.spacing);
 }
 
-Result<std::vector<ComponentPoints>>
-points_of_components(const CloudInput& cloud, const RepairedMesh& mesh, Context& context)
+Result<std::vector<ComponentPoints>> points_of_components(const CloudInput& cloud,
+                                                          const RepairedMesh& mesh, Index& off_mesh,
+                                                          Context& context)
 {
     std::vector<Vec3> positions;
     std::vector<std::array<Index, 3>> triangles;
@@ -194,8 +199,12 @@ points_of_components(const CloudInput& cloud, const RepairedMesh& mesh, Context&
     std::vector<Index> nearest(cloud.points.size());
     if (!for_each_chunk(context, nearest.size(), points_per_chunk,
                         [&](std::size_t begin, std::size_t end) {
-                            for (std::size_t i = begin; i < end; ++i)
-                                nearest[i] = component[closest.query(cloud.points[i]).where.face];
+                            for (std::size_t i = begin; i < end; ++i) {
+                                const double reach = reach_spacings * cloud.spacing[i] +
+                                                     reach_deviations * cloud.report.noise;
+                                const Index face = closest.query(cloud.points[i], reach).where.face;
+                                nearest[i] = face != invalid_index ? component[face] : face;
+                            }
                         }))
         return Context::cancelled_error("sampling");
     std::vector<ComponentPoints> result(mesh.components.size());
@@ -203,7 +212,12 @@ points_of_components(const CloudInput& cloud, const RepairedMesh& mesh, Context&
         points.least_deviation = expected_deviation(cloud.report);
         points.noise = cloud.report.noise;
     }
+    off_mesh = 0;
     for (std::size_t i = 0; i < nearest.size(); ++i) {
+        if (nearest[i] == invalid_index) {
+            ++off_mesh;
+            continue;
+        }
         result[nearest[i]].points.push_back(cloud.points[i]);
         result[nearest[i]].weights.push_back(cloud.weights[i]);
     }

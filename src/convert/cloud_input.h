@@ -15,6 +15,7 @@ struct CloudInput {
     TriangleSoup mesh;
     std::vector<Vec3> points;    //!< Without those that are not fitted to.
     std::vector<double> weights; //!< Confidence times the area a point stands for.
+    std::vector<double> spacing; //!< Root of that area.
     std::vector<RepairNote> notes;
     CloudReport report;
 };
@@ -42,8 +43,10 @@ struct ComponentPoints {
 //! meet points more closely, and a point that is no nearer is an outlier, not a detail.
 double expected_deviation(const CloudReport& report);
 
-//! Shares the points out. Errors: cancelled.
-Result<std::vector<ComponentPoints>>
-points_of_components(const CloudInput& cloud, const RepairedMesh& mesh, Context& context);
+//! Shares the points out. Those that lie off the mesh, beside pieces of it that were left out, go
+//! to none: `off_mesh` says how many. Errors: cancelled.
+Result<std::vector<ComponentPoints>> points_of_components(const CloudInput& cloud,
+                                                          const RepairedMesh& mesh, Index& off_mesh,
+                                                          Context& context);
 
 } // namespace bot2nurbs

@@ -73,6 +73,7 @@ Json cloud_json(const CloudReport& r, bool fitted)
     j["not_finite"] = r.not_finite;
     j["duplicates"] = r.duplicates;
     j["outliers"] = r.outliers;
+    j["off_mesh"] = r.off_mesh;
     j["fitted"] = r.fitted;
     j["normals"] = normals_json(r.normals);
     j["spacing"] = r.spacing;

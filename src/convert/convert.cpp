@@ -364,9 +364,10 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
     std::vector<ComponentPoints> points;
     if (input->cloud) {
         Result<std::vector<ComponentPoints>> shared =
-            points_of_components(*input->cloud, mesh, context);
+            points_of_components(*input->cloud, mesh, report.cloud->off_mesh, context);
         if (!shared)
             return shared.error();
+        report.cloud->fitted -= report.cloud->off_mesh;
         points = std::move(*shared);
     }
 

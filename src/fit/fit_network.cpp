@@ -87,7 +87,10 @@ Result<FitResult> fit_network(const SplineNetwork& network, SurfaceSampleSet& sa
     if (!reduced)
         return reduced.error();
 
-    FitLoop loop(network, *reduced, options, context);
+    FitOptions scaled = options;
+    scaled.noise /= extent;
+    scaled.least_deviation /= extent;
+    FitLoop loop(network, *reduced, scaled, context);
     loop.points.resize(samples.size());
     loop.weights.resize(samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {

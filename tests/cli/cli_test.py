@@ -364,6 +364,68 @@ class OpenMeshes(CliTest):
             self.assertTrue((self.folder / output["path"]).is_file())
 
 
+class Points(CliTest):
+    def sphere(self, count=1500, keep=lambda p: True):
+        points = []
+        for i in range(count):
+            z = 1 - (2 * i + 1) / count
+            r, a = math.sqrt(1 - z * z), math.pi * (3 - math.sqrt(5)) * i
+            points.append((r * math.cos(a), r * math.sin(a), z))
+        return [p for p in points if keep(p)]
+
+    def cloud(self, name, points):
+        return self.write(name, "".join("%.9g %.9g %.9g\n" % p for p in points))
+
+    def test_points_become_a_solid_with_a_report_that_follows_its_schema(self):
+        cloud = self.cloud("scan.xyz", self.sphere())
+        run = self.run_command(cloud, "a.step", "--json", "a.json", "--solid")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        for word in ("points    1500", "noise", "topology  closed", "to points rms", "solid     yes"):
+            self.assertIn(word, run.stderr)
+        report = json.loads((self.folder / "a.json").read_text())
+        rules = json.loads((ROOT / "docs/schema/report.schema.json").read_text())
+        self.assertEqual(schema.errors(report, rules), [])
+        self.assertEqual(report["input"]["points"], 1500)
+        self.assertEqual(report["cloud"]["topology"], "closed")
+        names = [stage["name"] for stage in report["stages"]]
+        self.assertLess(names.index("normals"), names.index("reconstruct"))
+        self.assertLess(names.index("reconstruct"), names.index("check"))
+
+    def test_a_ply_without_faces_and_an_obj_of_vertices_are_points(self):
+        points = self.sphere(600)
+        ply = ("ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\nproperty float y\n"
+               "property float z\nend_header\n" % len(points))
+        ply += "".join("%.9g %.9g %.9g\n" % p for p in points)
+        obj = "".join("v %.9g %.9g %.9g\n" % p for p in points)
+        for name, text in (("a.ply", ply), ("b.obj", obj)):
+            run = self.run_command("--check", self.write(name, text))
+            self.assertEqual(run.returncode, 0, run.stderr)
+            self.assertIn("mesh made of 600 points", run.stdout)
+
+    def test_a_view_from_one_side_is_open_and_refused_as_a_solid_with_the_place(self):
+        cloud = self.cloud("scan.xyz", self.sphere(3000, lambda p: p[2] > 0.2))
+        run = self.run_command(cloud, "a.step", "--viewpoint", "0,0,9")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("topology  open", run.stderr)
+        self.assertIn("solid     no (valid: yes)", run.stderr)
+        self.assert_refused(5, "the points do not close", cloud, "b.step", "--solid")
+
+    def test_wrong_use_is_exit_code_2(self):
+        cloud = self.cloud("scan.xyz", self.sphere(100))
+        for words in (["--viewpoint", "1,2"], ["--viewpoint", "1,2,x"], ["--viewpoint", "1,2,nan"],
+                      ["--depth", "2"], ["--depth", "99"], ["--normals", "some"]):
+            run = self.run_command(cloud, "a.step", *words)
+            self.assertEqual(run.returncode, 2, (words, run.stderr))
+
+    def test_clouds_that_show_no_surface_are_exit_code_5(self):
+        self.assert_refused(5, "too few", self.cloud("few.xyz", self.sphere(12)), "a.step")
+        line = [(i * 0.1, i * 0.2, 0.0) for i in range(100)]
+        self.assert_refused(5, "line", self.cloud("line.xyz", line), "a.step")
+        self.assert_refused(5, "too few", self.cloud("same.xyz", [(1.0, 2.0, 3.0)] * 500), "a.step")
+        bare = self.cloud("bare.xyz", self.sphere(200))
+        self.assert_refused(5, "no normal", bare, "a.step", "--normals", "given")
+
+
 class Constraints(CliTest):
     def constraints(self):
         return json.loads((self.folder / "c.json").read_text())

@@ -221,6 +221,48 @@ TEST(FitNetwork, robust_rounds_ignore_outliers)
     EXPECT_LT(robust_error, 0.1 * plain_error);
 }
 
+TEST(FitNetwork, a_fit_that_knows_the_noise_does_not_follow_it)
+{
+    const Target target = sphere_target(2);
+    SurfaceSampleSet samples = sample_target(target, 2); // four for each unknown
+    constexpr double noise = 0.02;
+    std::mt19937 generator(5);
+    std::normal_distribution<double> step(0.0, noise);
+    for (Vec3& p : samples.positions)
+        p *= 1.0 + step(generator);
+    FitOptions options;
+    const Fit plain = fit(target.domain, samples, options);
+    options.noise = noise;
+    const Fit fair = fit(target.domain, samples, options);
+    EXPECT_LT(target_error(target, fair.result.surface).rms,
+              0.5 * target_error(target, plain.result.surface).rms);
+    EXPECT_LT(plain.result.summary.rounds.back().rms, 0.8 * noise);
+    EXPECT_NEAR(fair.result.summary.rounds.back().rms, noise, 0.25 * noise);
+}
+
+TEST(FitNetwork, noise_below_what_the_surface_can_meet_changes_nothing)
+{
+    const Target target = sphere_target(0);
+    const Fit plain = fit(target);
+    FitOptions options;
+    options.noise = 1e-9;
+    EXPECT_EQ(largest_difference(plain.result.surface, fit(target, options).result.surface), 0.0);
+}
+
+TEST(FitNetwork, robust_rounds_take_no_sample_within_the_least_deviation_for_an_outlier)
+{
+    const Target target = sphere_target(1);
+    SurfaceSampleSet samples = sample_target(target);
+    for (std::size_t i = 0; i < samples.size(); i += 20)
+        samples.positions[i] *= 1.05;
+    FitOptions options;
+    const Fit plain = fit(target.domain, samples, options);
+    options.robust = true;
+    options.least_deviation = 1.0;
+    const Fit same = fit(target.domain, samples, options);
+    EXPECT_EQ(largest_difference(plain.result.surface, same.result.surface), 0.0);
+}
+
 TEST(FitNetwork, falls_back_to_qr_above_the_condition_limit)
 {
     FitOptions options;
