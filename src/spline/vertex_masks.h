@@ -33,7 +33,16 @@ struct PetersMask {
 
 //! The unknowns of a vertex that a fan sees, in order of its local columns. `plane_u` and `plane_v`
 //! span the tangents of a closed fan; an open fan has the tangents of its first and last edge.
-enum class VertexColumn { control, position, plane_u, plane_v, first_tangent, last_tangent, shear };
+enum class VertexColumn {
+    control,
+    position,
+    plane_u,
+    plane_v,
+    first_tangent,
+    last_tangent,
+    shear,
+    twist
+};
 
 //! `control` stands for A_i and is listed once a sector.
 std::vector<VertexColumn> peters_vertex_columns(FanKind kind, Index sectors);
