@@ -35,7 +35,8 @@ protected:
 
     //! The domain edge that is edge i of a fan.
     Index fan_edge(const Fan& fan, Index i) const;
-    //! Numbers the ends of all edges: 2 e for the start of the edge's halfedge, 2 e + 1 for its end.
+    //! Numbers the ends of all edges: 2 e for the start of the edge's halfedge, 2 e + 1 for its
+    //! end.
     Index end_at(Index edge, Index vertex) const;
     //! The same for the start of a halfedge.
     Index end_of(Index h) const { return end_at(complex_.edge(h), complex_.from(h)); }
@@ -50,8 +51,8 @@ protected:
     std::vector<char> is_point_;
     SparseRows pool_;
     RowSum sum_;
-    std::vector<Index> apex_;      //!< Per vertex: pool row of its position, if made.
-    std::vector<Signed> tangent_;  //!< Per end of a sharp edge: its tangent there.
+    std::vector<Index> apex_;     //!< Per vertex: pool row of its position, if made.
+    std::vector<Signed> tangent_; //!< Per end of a sharp edge: its tangent there.
     std::vector<std::vector<Signed>> fan_columns_; //!< Vertex columns of each fan.
 
 private:

@@ -18,8 +18,7 @@ private:
     void apply_mask(const Fan& fan, const PetersMask& mask, std::vector<Signed> columns);
 };
 
-void PetersAssembly::apply_mask(const Fan& fan, const PetersMask& mask,
-                                        std::vector<Signed> columns)
+void PetersAssembly::apply_mask(const Fan& fan, const PetersMask& mask, std::vector<Signed> columns)
 {
     const Index k = fan.sector_count();
     if (!mask.twist.empty()) {
@@ -28,7 +27,8 @@ void PetersAssembly::apply_mask(const Fan& fan, const PetersMask& mask,
             const Index e = fan_edge(fan, i);
             Signed* at = &columns[mask.edge_column(i, 0)];
             if (complex_.is_sharp(e)) {
-                const Index row = side_[4 * std::size_t(e) + (end_at(e, fan.vertex) % 2 == 0 ? 1 : 2)];
+                const Index row =
+                    side_[4 * std::size_t(e) + (end_at(e, fan.vertex) % 2 == 0 ? 1 : 2)];
                 at[0].unknown = unknown_of(row);
             } else {
                 at[0].unknown = control_unknown(fan.sectors[i], 1, 0);

@@ -4,6 +4,8 @@
 #include "spline/fans.h"
 #include "spline/schemes.h"
 
+#include <string>
+
 namespace bot2nurbs {
 
 Result<SplineNetwork> build_spline_network(const QuadComplex& complex, SplineScheme scheme)
@@ -16,6 +18,7 @@ Result<SplineNetwork> build_spline_network(const QuadComplex& complex, SplineSch
     network.complex = complex;
     switch (scheme) {
     case SplineScheme::peters: build_peters(complex, *fans, network); break;
+    case SplineScheme::full: build_full(complex, *fans, network); break;
     case SplineScheme::eck_hoppe:
         network.c1_inside = false;
         if (Status refused = build_eck_hoppe(complex, *fans, network))
@@ -23,6 +26,27 @@ Result<SplineNetwork> build_spline_network(const QuadComplex& complex, SplineSch
         break;
     }
     return network;
+}
+
+Result<std::vector<Vec3>> recover_unknowns(const SplineNetwork& network,
+                                           const SplineSurface& surface)
+{
+    if (surface.patch_count() != network.complex.quad_count())
+        return Error{ErrorCode::invalid_domain,
+                     "a surface of " + std::to_string(surface.patch_count()) +
+                         " patches is not over a domain of " +
+                         std::to_string(network.complex.quad_count()) + " quads",
+                     invalid_index};
+    const SparseRows& rows = network.recovery;
+    if (rows.row_count() != network.unknown_count)
+        return Error{ErrorCode::bad_option,
+                     "unknowns can be read back from surfaces with the spline scheme full only",
+                     invalid_index};
+    std::vector<Vec3> unknowns(network.unknown_count);
+    for (Index u = 0; u < network.unknown_count; ++u)
+        for (std::size_t i = rows.offset[u]; i < rows.offset[u + 1]; ++i)
+            unknowns[u] += rows.weight[i] * surface.bezier()[rows.column[i]];
+    return unknowns;
 }
 
 } // namespace bot2nurbs
