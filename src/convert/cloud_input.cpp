@@ -16,8 +16,9 @@ namespace {
 constexpr std::size_t points_per_chunk = 256;
 constexpr double detail_spacings = 0.25;
 //! A mesh through points passes within about a spacing of each, and the noise; a point farther than
-//! this from it shows something that it leaves out.
-constexpr double reach_spacings = 3.0, reach_deviations = 4.0;
+//! this from it shows something that it leaves out. Among scattered points the spacing is large: it
+//! counts up to a multiple of the median.
+constexpr double reach_spacings = 1.5, reach_deviations = 4.0, most_medians = 3.0;
 
 std::string place_text(const Vec3& p)
 {
@@ -200,7 +201,9 @@ Result<std::vector<ComponentPoints>> points_of_components(const CloudInput& clou
     if (!for_each_chunk(context, nearest.size(), points_per_chunk,
                         [&](std::size_t begin, std::size_t end) {
                             for (std::size_t i = begin; i < end; ++i) {
-                                const double reach = reach_spacings * cloud.spacing[i] +
+                                const double spacing =
+                                    std::min(cloud.spacing[i], most_medians * cloud.report.spacing);
+                                const double reach = reach_spacings * spacing +
                                                      reach_deviations * cloud.report.noise;
                                 const Index face = closest.query(cloud.points[i], reach).where.face;
                                 nearest[i] = face != invalid_index ? component[face] : face;

@@ -65,11 +65,10 @@ TEST(PointDeviation, stops_when_cancelled_and_refuses_an_empty_surface)
     EXPECT_EQ(point_distances({}, disk.complex, SplineSurface(), context).error().code,
               ErrorCode::empty_input);
     context.cancel();
-    EXPECT_EQ(
-        point_distances({{0, 0, 0}}, disk.complex, fixtures::flat_patches(disk), context)
-            .error()
-            .code,
-        ErrorCode::cancelled);
+    EXPECT_EQ(point_distances({{0, 0, 0}}, disk.complex, fixtures::flat_patches(disk), context)
+                  .error()
+                  .code,
+              ErrorCode::cancelled);
 }
 
 } // namespace

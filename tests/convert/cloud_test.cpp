@@ -75,8 +75,8 @@ TEST_F(ConvertCloud, points_of_a_torus_become_a_solid_of_genus_one_through_them)
     EXPECT_LT(report.cloud->deviation.rms, 1e-3 * report.diagonal);
     EXPECT_EQ(report.deviation().source_to_surface.rms, report.cloud->deviation.rms);
     // The volume of a torus: 2 pi^2 R r^2.
-    EXPECT_NEAR(report.components[0].brep.volume,
-                2.0 * fixtures::pi * fixtures::pi * 1.0 * 0.16, 0.01);
+    EXPECT_NEAR(report.components[0].brep.volume, 2.0 * fixtures::pi * fixtures::pi * 1.0 * 0.16,
+                0.01);
     EXPECT_GT(std::filesystem::file_size(path("a.step")), 1000u);
 }
 
@@ -148,9 +148,8 @@ TEST_F(ConvertCloud, a_hole_of_the_size_allowed_is_closed_with_a_warning)
     EXPECT_TRUE(report.solid());
     EXPECT_EQ(report.cloud->topology, CloudTopology::holes_filled);
     EXPECT_GT(report.cloud->anchors, 0u);
-    const bool warned =
-        std::any_of(report.warnings.begin(), report.warnings.end(),
-                    [](const Warning& w) { return w.code == "holes_filled"; });
+    const bool warned = std::any_of(report.warnings.begin(), report.warnings.end(),
+                                    [](const Warning& w) { return w.code == "holes_filled"; });
     EXPECT_TRUE(warned);
 }
 
