@@ -218,9 +218,9 @@ class BadInput(CliTest):
             self.assertIn("error:", run.stderr)
             self.assertFalse((self.folder / "out.3dm").exists())
 
-    def test_a_mesh_without_faces_is_rejected(self):
+    def test_vertices_without_faces_are_points_and_three_are_too_few(self):
         mesh = self.write("a.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n")
-        self.assert_refused(5, "no faces", mesh, "a.3dm")
+        self.assert_refused(5, "too few", mesh, "a.3dm")
 
     def test_truncated_files_cannot_be_read(self):
         self.assert_refused(3, "a.off", self.write("a.off", TETRAHEDRON[:60]), "a.3dm")
