@@ -19,6 +19,7 @@ const std::map<std::string, int> archive_versions{{"4", 4},   {"5", 50},  {"6", 
                                                   {"60", 60}, {"70", 70}, {"80", 80}};
 const std::map<std::string, KnotForm> knot_forms{{"paper", KnotForm::paper}, {"c1", KnotForm::c1}};
 const std::map<std::string, SplineScheme> schemes{{"peters", SplineScheme::peters},
+                                                  {"full", SplineScheme::full},
                                                   {"eck-hoppe", SplineScheme::eck_hoppe}};
 const std::map<std::string, StepSchema> step_schemas{{"AP242", StepSchema::ap242},
                                                      {"AP214", StepSchema::ap214}};
@@ -114,7 +115,7 @@ std::variant<Command, int> parse_command(int argc, char** argv)
             ->type_name("paper|c1")
             ->group(surface);
     add_choice(app, "--spline", o.spline, schemes, "Spline scheme (default: peters)")
-        ->type_name("peters|eck-hoppe")
+        ->type_name("peters|full|eck-hoppe")
         ->group(surface);
     app.add_option("--rounds", o.fit.max_rounds, "Most rounds of fitting")
         ->type_name("N")

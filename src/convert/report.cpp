@@ -57,6 +57,16 @@ const char* knots_name(const std::optional<KnotForm>& knots)
     return *knots == KnotForm::paper ? "paper" : "c1";
 }
 
+const char* name_of(SplineScheme scheme)
+{
+    switch (scheme) {
+    case SplineScheme::peters: return "peters";
+    case SplineScheme::full: return "full";
+    case SplineScheme::eck_hoppe: return "eck-hoppe";
+    }
+    return "";
+}
+
 constexpr std::array<const char*, 3> component_names{"all", "largest", "split"};
 
 std::string length_text(const Length& length)
@@ -69,7 +79,7 @@ Json options_json(const ConvertOptions& o)
 {
     Json j;
     j["patches"] = o.patches ? Json(*o.patches) : Json(nullptr);
-    j["spline"] = o.spline == SplineScheme::peters ? "peters" : "eck-hoppe";
+    j["spline"] = name_of(o.spline);
     j["knots"] = knots_name(o.knots);
     j["rounds"] = o.fit.max_rounds;
     j["robust"] = o.fit.robust;
