@@ -25,6 +25,7 @@ PUBLIC_HEADERS = {
     "version": "core",
     "tolerance": "core",
     "manifold_mesh": "mesh",
+    "polygon_mesh": "mesh",
     "check_mesh": "mesh",
     "repair_mesh": "mesh",
     "closest_point": "mesh",
