@@ -40,6 +40,7 @@ PUBLIC_HEADERS = {
     "domain_constraints": "domain",
     "layout_quality": "domain",
     "layout": "layout",
+    "import_quads": "layout",
     "spline_network": "spline",
     "fit_network": "fit",
     "deviation": "brep",
