@@ -64,6 +64,16 @@ bool parse_features(const std::string& text, ConvertOptions& options)
     return !options.feature_options.check();
 }
 
+// False for an unknown kind of layout.
+bool parse_layout(const std::string& text, ConvertOptions& options)
+{
+    const std::string quads = "quads=";
+    if (text.compare(0, quads.size(), quads) != 0)
+        return text == "eck";
+    options.quads = text.substr(quads.size());
+    return !options.quads->empty();
+}
+
 } // namespace
 
 std::variant<Command, int> parse_command(int argc, char** argv)
@@ -87,6 +97,12 @@ std::variant<Command, int> parse_command(int argc, char** argv)
                        "Wanted number of patches per component (default: from the shape)")
             ->type_name("N")
             ->group(surface);
+    std::string layout = "eck";
+    app.add_option("--layout", layout,
+                   "Automatic patches, or the quads of a mesh FILE (.obj .ply .off) near INPUT")
+        ->type_name("eck|quads=FILE")
+        ->capture_default_str()
+        ->group(surface);
     KnotForm knots = KnotForm::paper;
     CLI::Option* knots_option =
         add_choice(app, "--knots", knots, knot_forms,
@@ -190,6 +206,11 @@ std::variant<Command, int> parse_command(int argc, char** argv)
             "bot2nurbs: --features %s is not auto, off, or an angle above 0 and at most 180 "
             "degrees\n",
             features.c_str());
+        return exit_code(ErrorCode::bad_option);
+    }
+    if (!parse_layout(layout, o)) {
+        std::fprintf(stderr, "bot2nurbs: --layout %s is neither eck nor quads=FILE\n",
+                     layout.c_str());
         return exit_code(ErrorCode::bad_option);
     }
     if (*patches_option)

@@ -108,6 +108,25 @@ std::vector<FeaturePath> feature_paths(const MeshFeatures& features)
     return paths;
 }
 
+//! The domain that a quad mesh makes; creases that it does not follow are no features any more.
+Result<QuadDomain> import_layout(const ManifoldMesh& unit, QuadMesh quads, const Frame& frame,
+                                 MeshFeatures& features, Context& context)
+{
+    for (Vec3& p : quads.positions)
+        p = frame.to_unit(p);
+    Result<QuadImport> made = import_quads(unit, quads, features, context);
+    if (!made)
+        return made.error();
+    context.log(LogLevel::info,
+                fmt::format("layout: {} quads; vertex {} is moved farthest, by {:.3g}; {} of its "
+                            "edges are creases",
+                            quads.quads.size(), quads.source_vertex[made->farthest_vertex],
+                            frame.size * made->largest_move, made->crease_edges));
+    features.kept_edges -= static_cast<Index>(made->smoothed.size());
+    features.smoothed.insert(features.smoothed.end(), made->smoothed.begin(), made->smoothed.end());
+    return std::move(made->domain);
+}
+
 void to_input_units(DistanceStatistics& s, const Frame& frame)
 {
     s.max *= frame.size;
@@ -137,8 +156,7 @@ void log_rounds(const FitSummary& fit, const Context& context)
 } // namespace
 
 Result<ConvertedComponent> convert_component(const MeshComponent& component,
-                                             std::optional<QuadDomain> supplied,
-                                             const ConvertOptions& options,
+                                             SuppliedLayout supplied, const ConvertOptions& options,
                                              const std::vector<KnotForm>& forms,
                                              const std::string& stage_suffix, Context& context)
 {
@@ -161,11 +179,17 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
     Result<MeshFeatures> features = find_features(*unit, options, context);
     if (!features)
         return features.error();
-    outcome.features = describe(*features, component);
 
     stage("layout");
-    if (supplied) {
-        result.domain = std::move(*supplied);
+    if (supplied.domain) {
+        result.domain = std::move(*supplied.domain);
+    } else if (supplied.quads) {
+        Result<QuadDomain> domain =
+            import_layout(*unit, std::move(*supplied.quads), frame, *features, context);
+        if (!domain)
+            return domain.error();
+        result.domain = std::move(*domain);
+        result.domain.source_signature = signature(component.mesh);
     } else {
         LayoutOptions layout_options;
         layout_options.patches = options.patches;
@@ -180,6 +204,7 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
         for (const std::string& note : layout->summary.notes)
             context.log(LogLevel::info, "layout: " + note);
     }
+    outcome.features = describe(*features, component);
     if (Status failed = place_carrier(result.domain.carrier, *unit))
         return *failed;
     outcome.domain = describe(result.domain);

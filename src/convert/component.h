@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bot2nurbs/convert.h"
-#include "bot2nurbs/quad_domain.h"
+#include "bot2nurbs/import_quads.h"
 #include "bot2nurbs/repair_mesh.h"
 
 #include <optional>
@@ -19,11 +19,16 @@ struct ConvertedComponent {
     std::vector<Brep> breps; //!< One for each of the knot forms asked for, in their order.
 };
 
-//! Converts one closed component. `supplied` replaces the automatic layout. No knot forms asked
+//! What replaces the automatic layout of a component, if anything.
+struct SuppliedLayout {
+    std::optional<QuadDomain> domain;
+    std::optional<QuadMesh> quads; //!< In the coordinates of the input.
+};
+
+//! Converts one component. No knot forms asked
 //! for: stops after the domain. `stage_suffix` is added to the names of the stages.
 Result<ConvertedComponent> convert_component(const MeshComponent& component,
-                                             std::optional<QuadDomain> supplied,
-                                             const ConvertOptions& options,
+                                             SuppliedLayout supplied, const ConvertOptions& options,
                                              const std::vector<KnotForm>& forms,
                                              const std::string& stage_suffix, Context& context);
 

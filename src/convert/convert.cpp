@@ -5,6 +5,7 @@
 #include "convert/component.h"
 #include "convert/domain_input.h"
 #include "convert/input.h"
+#include "convert/quads_input.h"
 #include "convert/tessellation.h"
 #include "io/atomic_file.h"
 
@@ -227,6 +228,10 @@ std::optional<Error> ConvertOptions::check() const
             fmt::format("--patches {} is too few: at least {}", *patches, fewest_patches));
     if (patches && domain_in)
         return bad_option("--patches steers the automatic layout: it contradicts --domain-in");
+    if (patches && quads)
+        return bad_option("--patches steers the automatic layout: it contradicts --layout quads");
+    if (quads && domain_in)
+        return bad_option("--layout quads contradicts --domain-in: both are layouts");
     if (std::optional<Error> failed = fit.check())
         return failed;
     if (std::optional<Error> failed = feature_options.check())
@@ -244,8 +249,9 @@ std::optional<Error> ConvertOptions::check() const
             paths.begin() + static_cast<std::ptrdiff_t>(i))
             return bad_option(fmt::format("{} is to be written twice", paths[i]));
         std::error_code unknown;
-        if (fs::equivalent(paths[i], input, unknown))
-            return bad_option(fmt::format("{} is the input: it would be overwritten", paths[i]));
+        for (const std::string& read : {input, quads.value_or(input)})
+            if (fs::equivalent(paths[i], read, unknown))
+                return bad_option(fmt::format("{} is read: it would be overwritten", paths[i]));
         if (Status failed = check_folder(paths[i]))
             return failed;
     }
@@ -278,6 +284,15 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
         supplied = std::move(*domains);
     }
 
+    std::vector<QuadMesh> quads;
+    if (options.quads) {
+        context.begin_stage("read quads");
+        Result<std::vector<QuadMesh>> read = quads_of_components(*options.quads, mesh, context);
+        if (!read)
+            return read.error();
+        quads = std::move(*read);
+    }
+
     // The knot forms that the outputs need, each made once.
     std::vector<KnotForm> forms;
     for (const std::string& path : options.outputs) {
@@ -291,12 +306,14 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
     std::vector<ConvertedComponent> components;
     const std::size_t count = mesh.components.size();
     for (std::size_t c = 0; c < count; ++c) {
-        std::optional<QuadDomain> domain;
+        SuppliedLayout layout;
         if (options.domain_in)
-            domain = std::move(supplied[c]);
+            layout.domain = std::move(supplied[c]);
+        if (options.quads)
+            layout.quads = std::move(quads[c]);
         const std::string suffix = count > 1 ? fmt::format(" {}/{}", c + 1, count) : "";
         Result<ConvertedComponent> converted = convert_component(
-            mesh.components[c], std::move(domain), options, forms, suffix, context);
+            mesh.components[c], std::move(layout), options, forms, suffix, context);
         if (!converted) {
             Error error = converted.error();
             if (count > 1 && error.code != ErrorCode::cancelled)

@@ -65,6 +65,7 @@ Json options_json(const ConvertOptions& o)
     j["robust"] = o.fit.robust;
     j["repair"] = o.repair;
     j["strict"] = o.strict;
+    j["layout"] = o.quads ? "quads=" + *o.quads : "eck";
     j["domain_in"] = o.domain_in ? Json(*o.domain_in) : Json(nullptr);
     j["domain_out"] = o.domain_out ? Json(*o.domain_out) : Json(nullptr);
     j["units"] = o.write.units;
