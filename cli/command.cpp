@@ -103,6 +103,9 @@ std::variant<Command, int> parse_command(int argc, char** argv)
         ->type_name("eck|quads=FILE")
         ->capture_default_str()
         ->group(surface);
+    app.add_flag("--cage", o.cage,
+                 "INPUT is a mesh of quads: convert its Catmull-Clark surface, a patch a quad")
+        ->group(surface);
     KnotForm knots = KnotForm::paper;
     CLI::Option* knots_option =
         add_choice(app, "--knots", knots, knot_forms,
@@ -233,6 +236,10 @@ std::variant<Command, int> parse_command(int argc, char** argv)
         }
         if (!o.outputs.empty() || o.domain_out || o.tessellation) {
             std::fprintf(stderr, "bot2nurbs: %s writes no output file\n", name);
+            return exit_code(ErrorCode::bad_option);
+        }
+        if (o.cage) {
+            std::fprintf(stderr, "bot2nurbs: %s does not look at a --cage\n", name);
             return exit_code(ErrorCode::bad_option);
         }
         if (*validate)

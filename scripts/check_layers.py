@@ -41,6 +41,7 @@ PUBLIC_HEADERS = {
     "layout_quality": "domain",
     "layout": "layout",
     "import_quads": "layout",
+    "cage_surface": "layout",
     "spline_network": "spline",
     "fit_network": "fit",
     "deviation": "brep",

@@ -110,18 +110,15 @@ std::vector<FeaturePath> feature_paths(const MeshFeatures& features)
 
 //! The domain that a quad mesh makes; creases that it does not follow are no features any more.
 Result<QuadDomain> import_layout(const ManifoldMesh& unit, QuadMesh quads, const Frame& frame,
-                                 MeshFeatures& features, Context& context)
+                                 MeshFeatures& features, QuadsReport& report, Context& context)
 {
     for (Vec3& p : quads.positions)
         p = frame.to_unit(p);
     Result<QuadImport> made = import_quads(unit, quads, features, context);
     if (!made)
         return made.error();
-    context.log(LogLevel::info,
-                fmt::format("layout: {} quads; vertex {} is moved farthest, by {:.3g}; {} of its "
-                            "edges are creases",
-                            quads.quads.size(), quads.source_vertex[made->farthest_vertex],
-                            frame.size * made->largest_move, made->crease_edges));
+    report = {frame.size * made->largest_move, quads.source_vertex[made->farthest_vertex],
+              made->crease_edges};
     features.kept_edges -= static_cast<Index>(made->smoothed.size());
     features.smoothed.insert(features.smoothed.end(), made->smoothed.begin(), made->smoothed.end());
     return std::move(made->domain);
@@ -176,7 +173,9 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
     outcome.diagonal = component.mesh.box().diagonal();
 
     stage("features");
-    Result<MeshFeatures> features = find_features(*unit, options, context);
+    // The surface of a cage is smooth.
+    Result<MeshFeatures> features =
+        options.cage ? MeshFeatures() : find_features(*unit, options, context);
     if (!features)
         return features.error();
 
@@ -184,8 +183,8 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
     if (supplied.domain) {
         result.domain = std::move(*supplied.domain);
     } else if (supplied.quads) {
-        Result<QuadDomain> domain =
-            import_layout(*unit, std::move(*supplied.quads), frame, *features, context);
+        Result<QuadDomain> domain = import_layout(*unit, std::move(*supplied.quads), frame,
+                                                  *features, outcome.quads.emplace(), context);
         if (!domain)
             return domain.error();
         result.domain = std::move(*domain);

@@ -2,6 +2,7 @@
 #include "bot2nurbs/convert.h"
 
 #include "bot2nurbs/domain_file.h"
+#include "convert/cage_input.h"
 #include "convert/component.h"
 #include "convert/domain_input.h"
 #include "convert/input.h"
@@ -26,6 +27,10 @@ namespace fs = std::filesystem;
 // The cube has six faces; a closed domain of inner valences of at least three cannot have fewer
 // unless it winds round a handle.
 constexpr Index fewest_patches = 6;
+
+// An edge of a mesh of quads is suspect when it is so many times as long on the mesh as straight.
+// Half a turn is 1.6, and the edges of quads that folds of the mesh push aside are up to 2.4.
+constexpr double most_detour = 4.0;
 
 enum class Format { archive_3dm, step, occ_brep };
 
@@ -149,6 +154,21 @@ void add_outcome_warnings(const ConvertOptions& options, ConvertReport& report)
              vertex});
 }
 
+//! Edges of quads that take a long way over the mesh: it is another shape there.
+void add_detour_warnings(ConvertReport& report)
+{
+    for (std::size_t c = 0; c < report.components.size(); ++c) {
+        const Spread& s = report.components[c].quality.straightness;
+        if (report.components[c].quads && s.most > most_detour)
+            report.warnings.push_back(
+                {"layout_detour",
+                 fmt::format("edge {} of the quads of component {} is {:.1f} times as long on the "
+                             "mesh as its ends are apart: the quads do not follow the mesh there",
+                             s.most_at, c + 1, s.most),
+                 s.most_at});
+    }
+}
+
 struct PendingFile {
     OutputFile file;
     std::string bytes;
@@ -232,6 +252,17 @@ std::optional<Error> ConvertOptions::check() const
         return bad_option("--patches steers the automatic layout: it contradicts --layout quads");
     if (quads && domain_in)
         return bad_option("--layout quads contradicts --domain-in: both are layouts");
+    if (cage) {
+        const char* other = patches      ? "--patches"
+                            : quads      ? "--layout quads"
+                            : domain_in  ? "--domain-in"
+                            : domain_out ? "--domain-out"
+                            : strict     ? "--strict"
+                                         : nullptr;
+        if (other)
+            return bad_option(fmt::format(
+                "{} needs a mesh, but with --cage the input is the layout itself", other));
+    }
     if (std::optional<Error> failed = fit.check())
         return failed;
     if (std::optional<Error> failed = feature_options.check())
@@ -262,7 +293,16 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
 {
     if (const std::optional<Error> failed = options.check())
         return *failed;
-    const Result<PreparedInput> input = prepare_input(options, context);
+    std::vector<QuadDomain> supplied;
+    const Result<PreparedInput> input = [&]() -> Result<PreparedInput> {
+        if (!options.cage)
+            return prepare_input(options, context);
+        Result<PreparedCage> cage = prepare_cage(options, context);
+        if (!cage)
+            return cage.error();
+        supplied = std::move(cage->domains);
+        return std::move(cage->input);
+    }();
     if (!input)
         return input.error();
     const RepairedMesh& mesh = input->mesh;
@@ -276,7 +316,6 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
     report.diagonal = mesh.box.diagonal();
     add_input_warnings(*input, report);
 
-    std::vector<QuadDomain> supplied;
     if (options.domain_in) {
         Result<std::vector<QuadDomain>> domains = valid_domains(*options.domain_in, mesh, context);
         if (!domains)
@@ -307,7 +346,7 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
     const std::size_t count = mesh.components.size();
     for (std::size_t c = 0; c < count; ++c) {
         SuppliedLayout layout;
-        if (options.domain_in)
+        if (!supplied.empty())
             layout.domain = std::move(supplied[c]);
         if (options.quads)
             layout.quads = std::move(quads[c]);
@@ -331,6 +370,7 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
     for (const ConvertedComponent& c : components)
         report.components.push_back(c.outcome);
     add_outcome_warnings(options, report);
+    add_detour_warnings(report);
     if (context.cancelled())
         return Context::cancelled_error("write");
     for (const PendingFile& pending : *files) {

@@ -32,7 +32,8 @@ public:
             taken_[v] = 1;
     }
 
-    //! To the nearest vertex that is an end, is_end(vertex, distance). `goal` may be reached though it is taken.
+    //! To the nearest vertex that is an end, is_end(vertex, distance). `goal` may be reached though
+    //! it is taken.
     template <class IsEnd>
     std::optional<Chain> find(Index start, const IsEnd& is_end, Index goal = invalid_index) const
     {

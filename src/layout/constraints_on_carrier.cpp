@@ -128,13 +128,14 @@ Status route_joints(const ManifoldMesh& mesh, const CarrierConstraints& constrai
     ChainFinder finder(mesh, marks, constraints.sites);
     std::vector<double> length;
     for (const auto& joint : constraints.joined) {
-        const auto chain =
-            finder.find(joint.a, [&joint](Index v, double) { return v == joint.b; }, joint.b);
+        const auto chain = finder.find(
+            joint.a, [&joint](Index v, double) { return v == joint.b; }, joint.b);
         if (!chain)
-            return conflict("adjacency " + std::to_string(joint.number) +
-                                ": no way from one of its sites to the other meets no path, feature "
-                                "or other site",
-                            joint.number);
+            return conflict(
+                "adjacency " + std::to_string(joint.number) +
+                    ": no way from one of its sites to the other meets no path, feature "
+                    "or other site",
+                joint.number);
         finder.mark(chain->vertices, joint_mark);
         length.push_back(chain->length);
     }
@@ -225,8 +226,7 @@ Status check_kept(const QuadDomain& domain, const ManifoldMesh& source,
         if (found == along.end())
             return nullptr;
         for (const Step& step : found->second) {
-            const Vec3 way =
-                normalized(domain.carrier.mesh.position(step.to) - source.position(a));
+            const Vec3 way = normalized(domain.carrier.mesh.position(step.to) - source.position(a));
             if (step.to == b || (step.to >= source.vertex_count() && dot(way, d) > same_way))
                 return &step.crease;
         }

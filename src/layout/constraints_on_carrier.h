@@ -36,14 +36,14 @@ Status check_constrained_paths(const DomainConstraints& constraints, const Manif
 Result<CarrierConstraints> place_constraints(const DomainConstraints& constraints,
                                              const std::vector<Index>& point_vertices);
 
-//! Marks for every required adjacency a shortest chain of mesh edges between its sites, which meets no
-//! marked edge and no other site on the way. Errors: constraint_conflict naming the adjacency that
-//! finds no way.
+//! Marks for every required adjacency a shortest chain of mesh edges between its sites, which meets
+//! no marked edge and no other site on the way. Errors: constraint_conflict naming the adjacency
+//! that finds no way.
 Status route_joints(const ManifoldMesh& mesh, const CarrierConstraints& constraints,
                     std::vector<char>& marks);
 
-//! Whether a finished domain keeps all constraints. Errors: constraint_conflict naming the first that
-//! it does not.
+//! Whether a finished domain keeps all constraints. Errors: constraint_conflict naming the first
+//! that it does not.
 Status check_kept(const QuadDomain& domain, const ManifoldMesh& source,
                   const DomainConstraints& wanted, const CarrierConstraints& constraints);
 

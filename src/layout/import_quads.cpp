@@ -2,13 +2,13 @@
 #include "bot2nurbs/import_quads.h"
 
 #include "bot2nurbs/closest_point.h"
-#include "bot2nurbs/validate_domain.h"
 #include "domain/domain_paths.h"
 #include "layout/curves.h"
 #include "layout/draw_quads.h"
 #include "layout/ground.h"
 #include "layout/matched_edges.h"
 #include "layout/quad_boundary.h"
+#include "layout/quad_names.h"
 #include "layout/quad_places.h"
 #include "layout/straighten_paths.h"
 #include "mesh/boundary_loops.h"
@@ -92,22 +92,16 @@ public:
 
 private:
     PlacedQuads placed() const { return {complex_, quads_.positions, size_}; }
-    std::string vertex_name(Index v) const
-    {
-        return "vertex " + text(quads_.source_vertex[v]) + " of the quad mesh (counted from 0)";
-    }
     Error named_vertex(Error error) const
     {
-        error.message = vertex_name(error.element) + ' ' + error.message;
+        error.message = vertex_name(quads_, error.element) + ' ' + error.message;
         error.element = quads_.source_vertex[error.element];
         return error;
     }
     Error named_edge(Error error) const
     {
         const Index h = complex_.halfedge_of_edge(error.element);
-        error.message = "edge " + text(quads_.source_vertex[complex_.from(h)]) + "-" +
-                        text(quads_.source_vertex[complex_.to(h)]) +
-                        " of the quad mesh (vertices counted from 0) " + error.message;
+        error.message = edge_name(quads_, complex_, error.element) + ' ' + error.message;
         error.element = quads_.source_vertex[complex_.from(h)];
         return error;
     }
@@ -148,17 +142,7 @@ private:
                                ", the mesh " + topology_text(euler, loops) +
                                ": a layout must have the topology of its mesh",
                            invalid_index);
-        const Index most = ValidateOptions().max_valence;
-        for (Index v = 0; v < complex_.vertex_count(); ++v) {
-            if (!is_boundary_vertex(complex_, v) && complex_.valence(v) < 3)
-                return invalid(vertex_name(v) + " has two faces only: dissolve it, or add an edge",
-                               quads_.source_vertex[v]);
-            if (complex_.valence(v) > most)
-                return invalid(vertex_name(v) + " has " + text(complex_.valence(v)) +
-                                   " faces: at most " + text(most) + " may meet",
-                               quads_.source_vertex[v]);
-        }
-        return {};
+        return check_valences(complex_, quads_);
     }
 
     // Area vectors around each vertex.
@@ -219,7 +203,7 @@ private:
         for (Index v = 0; v < at.size(); ++v) {
             const double away = norm(at[v] - quads_.positions[v]);
             if (away > farthest * size_[v])
-                return invalid(vertex_name(v) + " is " + std::to_string(away / size_[v]) +
+                return invalid(vertex_name(quads_, v) + " is " + std::to_string(away / size_[v]) +
                                    " times as far from the mesh as its edges are long: a layout "
                                    "must lie near its mesh",
                                quads_.source_vertex[v]);

@@ -46,8 +46,9 @@ Result<QuadDomain> make_domain(const PatchComplex& quads, CarrierMesh carrier,
     for (Index v = 0; v < domain.vertices.size(); ++v)
         if (domain.vertices[v] < is_corner.size() && is_corner[domain.vertices[v]])
             corners.push_back(v);
-    Result<QuadComplex> built = QuadComplex::build(static_cast<Index>(domain.vertices.size()),
-                                                   std::move(corners_of), creases, std::move(corners));
+    Result<QuadComplex> built =
+        QuadComplex::build(static_cast<Index>(domain.vertices.size()), std::move(corners_of),
+                           creases, std::move(corners));
     if (!built)
         return built.error();
     domain.complex = std::move(*built);

@@ -10,8 +10,8 @@ namespace bot2nurbs {
 bool is_simple(const PatchComplex& quads);
 
 //! A compact complex of quads on a carrier as a domain, with the creases that its marks say and
-//! corners by carrier vertex (those beyond the end of `is_corner` are none). Errors: invalid_domain.
-//! \pre is_simple(quads)
+//! corners by carrier vertex (those beyond the end of `is_corner` are none). Errors:
+//! invalid_domain. \pre is_simple(quads)
 Result<QuadDomain> make_domain(const PatchComplex& quads, CarrierMesh carrier,
                                const std::vector<char>& is_corner);
 

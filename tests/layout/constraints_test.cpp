@@ -129,11 +129,10 @@ TEST(Constraints, sites_are_vertices_of_the_domain)
         ASSERT_TRUE(layout.ok()) << layout.error().message;
         for (const ConstraintSite& s : c.sites) {
             const Vec3 p = s.vertex ? mesh.position(*s.vertex) : mesh.at(s.point);
-            EXPECT_TRUE(std::any_of(layout->domain.vertices.begin(), layout->domain.vertices.end(),
-                                    [&](Index v) {
-                                        return norm(layout->domain.carrier.mesh.position(v) - p) <
-                                               1e-14;
-                                    }));
+            EXPECT_TRUE(std::any_of(
+                layout->domain.vertices.begin(), layout->domain.vertices.end(), [&](Index v) {
+                    return norm(layout->domain.carrier.mesh.position(v) - p) < 1e-14;
+                }));
         }
     }
 }
@@ -149,8 +148,8 @@ TEST(Constraints, two_sites_at_one_place_are_a_conflict)
 TEST(Constraints, paths_are_smooth_edges_of_the_domain_and_creases_sharp_ones)
 {
     const ManifoldMesh mesh = moved(cube(8), [](const Vec3& p) { return p; });
-    const std::vector<Index> around = ring(mesh, mesh.position(0).z + 0.5 * (mesh.box().max.z -
-                                                                             mesh.box().min.z));
+    const std::vector<Index> around =
+        ring(mesh, mesh.position(0).z + 0.5 * (mesh.box().max.z - mesh.box().min.z));
     ASSERT_GE(around.size(), 10u);
     ASSERT_EQ(around.front(), around.back());
     for (const bool crease : {false, true}) {
@@ -199,7 +198,8 @@ TEST(Constraints, a_required_adjacency_is_an_edge)
 {
     const ManifoldMesh mesh = icosphere(4);
     DomainConstraints c;
-    c.sites = {{nearest_vertex(mesh, {1, 0, 0}), {}, {}}, {nearest_vertex(mesh, {0, 1, 0}), {}, {}}};
+    c.sites = {{nearest_vertex(mesh, {1, 0, 0}), {}, {}},
+               {nearest_vertex(mesh, {0, 1, 0}), {}, {}}};
     c.adjacencies = {{Demand::required, {0, 1}}};
     const auto layout = lay_out(mesh, c);
     ASSERT_TRUE(layout.ok()) << layout.error().message;
@@ -258,8 +258,8 @@ TEST(Constraints, pairings_are_quads_when_required_and_none_when_forbidden)
     const DomainConstraints sites = sites_of_layout(mesh, 20, before);
     const auto free = lay_out(mesh, sites, 20);
     ASSERT_TRUE(free.ok());
-    // Every diagonal between two sites was the edge of a pair: its being joined can be forbidden, and
-    // what was an edge can be required to be one, unless that is too far.
+    // Every diagonal between two sites was the edge of a pair: its being joined can be forbidden,
+    // and what was an edge can be required to be one, unless that is too far.
     int required = 0, forbidden = 0;
     for (const Edge& d : diagonals_of(free->domain)) {
         const Index a = number_of(sites, d.first), b = number_of(sites, d.second);
@@ -328,8 +328,8 @@ TEST(Constraints, hints_steer_the_count_and_the_valence)
         auto wished = lay_out(mesh, c, 60);
         ASSERT_TRUE(wished.ok());
         const auto& vertices = wished->domain.vertices;
-        const Index at = static_cast<Index>(
-            std::find(vertices.begin(), vertices.end(), v) - vertices.begin());
+        const Index at =
+            static_cast<Index>(std::find(vertices.begin(), vertices.end(), v) - vertices.begin());
         met += wished->domain.complex.valence(at) == 5;
     }
     // A hint: by chance one vertex in eight has five quads.
