@@ -50,6 +50,9 @@ struct QuadsReport {
     double largest_move = 0.0;             //!< Of a vertex of the quads, to its place on the mesh.
     Index farthest_vertex = invalid_index; //!< That vertex, as the file of the quads numbers it.
     Index crease_edges = 0;                //!< Edges of the quads that are creases.
+    double largest_detour = 1.0; //!< Length of an edge on the mesh over the distance of its ends.
+    //! The ends of that edge, as the file of the quads numbers them.
+    std::array<Index, 2> detour_edge{invalid_index, invalid_index};
 };
 
 //! What became of one connected component of the input.

@@ -19,8 +19,9 @@ MeshComponent component_of(const QuadMesh& cage, CageSurface& surface)
     for (const Index quad : surface.quad_of_face)
         component.source_face.push_back(cage.source_face[quad]);
     component.boundary_loops = static_cast<Index>(boundary_loops(surface.mesh).size());
-    component.genus =
-        (2 - surface.domain.complex.euler_characteristic() - static_cast<int>(component.boundary_loops)) / 2;
+    component.genus = (2 - surface.domain.complex.euler_characteristic() -
+                       static_cast<int>(component.boundary_loops)) /
+                      2;
     if (component.boundary_loops == 0)
         component.volume = surface.mesh.volume();
     component.mesh = std::move(surface.mesh);

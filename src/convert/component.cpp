@@ -117,8 +117,9 @@ Result<QuadDomain> import_layout(const ManifoldMesh& unit, QuadMesh quads, const
     Result<QuadImport> made = import_quads(unit, quads, features, context);
     if (!made)
         return made.error();
-    report = {frame.size * made->largest_move, quads.source_vertex[made->farthest_vertex],
-              made->crease_edges};
+    report.largest_move = frame.size * made->largest_move;
+    report.farthest_vertex = quads.source_vertex[made->farthest_vertex];
+    report.crease_edges = made->crease_edges;
     features.kept_edges -= static_cast<Index>(made->smoothed.size());
     features.smoothed.insert(features.smoothed.end(), made->smoothed.begin(), made->smoothed.end());
     return std::move(made->domain);
@@ -183,8 +184,8 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
     if (supplied.domain) {
         result.domain = std::move(*supplied.domain);
     } else if (supplied.quads) {
-        Result<QuadDomain> domain = import_layout(*unit, std::move(*supplied.quads), frame,
-                                                  *features, outcome.quads.emplace(), context);
+        Result<QuadDomain> domain = import_layout(*unit, *supplied.quads, frame, *features,
+                                                  outcome.quads.emplace(), context);
         if (!domain)
             return domain.error();
         result.domain = std::move(*domain);
@@ -218,6 +219,13 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
             outcome.layout->exact_maps += chart.level == MapLevel::exact;
         }
     outcome.quality = measure_layout(result.domain, *charts);
+    if (outcome.quads) {
+        const Spread& detours = outcome.quality.straightness;
+        const DomainEdge& longest = result.domain.edges[detours.most_at];
+        outcome.quads->largest_detour = detours.most;
+        outcome.quads->detour_edge = {supplied.quads->source_vertex[longest.a],
+                                      supplied.quads->source_vertex[longest.b]};
+    }
     if (forms.empty())
         return result;
 

@@ -157,16 +157,16 @@ void add_outcome_warnings(const ConvertOptions& options, ConvertReport& report)
 //! Edges of quads that take a long way over the mesh: it is another shape there.
 void add_detour_warnings(ConvertReport& report)
 {
-    for (std::size_t c = 0; c < report.components.size(); ++c) {
-        const Spread& s = report.components[c].quality.straightness;
-        if (report.components[c].quads && s.most > most_detour)
+    for (const ComponentOutcome& c : report.components)
+        if (c.quads && c.quads->largest_detour > most_detour)
             report.warnings.push_back(
                 {"layout_detour",
-                 fmt::format("edge {} of the quads of component {} is {:.1f} times as long on the "
-                             "mesh as its ends are apart: the quads do not follow the mesh there",
-                             s.most_at, c + 1, s.most),
-                 s.most_at});
-    }
+                 fmt::format("edge {}-{} of the quad mesh (vertices counted from 0) is {:.1f} "
+                             "times as long on the mesh as its ends are apart: the quads do not "
+                             "follow the mesh there",
+                             c.quads->detour_edge[0], c.quads->detour_edge[1],
+                             c.quads->largest_detour),
+                 c.quads->detour_edge[0]});
 }
 
 struct PendingFile {

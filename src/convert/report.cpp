@@ -211,7 +211,9 @@ Json component_json(const ComponentOutcome& c, const std::string& unit)
     if (c.quads)
         j["quads"] = {{"largest_move", c.quads->largest_move},
                       {"farthest_vertex", c.quads->farthest_vertex},
-                      {"crease_edges", c.quads->crease_edges}};
+                      {"crease_edges", c.quads->crease_edges},
+                      {"largest_detour", c.quads->largest_detour},
+                      {"detour_edge", c.quads->detour_edge}};
     j["layout_quality"] = quality_json(c.quality);
     if (c.brep_faces > 0) {
         j["fit"] = fit_json(c.fit);

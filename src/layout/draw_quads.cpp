@@ -33,12 +33,12 @@ public:
     bool is_drawn(Index edge) const { return drawn_.is_drawn(edge); }
 
     // Draws an edge, unless no path for it keeps what is left drawable.
-    bool draw(Index edge)
+    bool draw(Index edge, const std::vector<Index>& straight)
     {
         const Index h = complex_.halfedge_of_edge(edge);
         const Index a = complex_.from(h), b = complex_.to(h);
         const auto route = finder_.find(vertices_[a], sector(h), vertices_[b],
-                                        sector(complex_.twin(h)), guide(a, b));
+                                        sector(complex_.twin(h)), guide(a, b), straight);
         if (!route)
             return false;
         drawn_.path_of[edge] = web_.path_count();
@@ -120,7 +120,9 @@ std::vector<Index> breadth_first(const QuadComplex& complex)
 
 Result<std::vector<SurfacePath>> draw_quads(const ManifoldMesh& mesh, const QuadComplex& complex,
                                             const std::vector<Index>& vertices,
-                                            const std::vector<DrawnCurve>& curves, Context& context)
+                                            const std::vector<DrawnCurve>& curves,
+                                            const std::vector<std::vector<Index>>& straight,
+                                            Context& context)
 {
     Drawing drawing(mesh, complex, vertices);
     for (const DrawnCurve& curve : curves)
@@ -139,7 +141,7 @@ Result<std::vector<SurfacePath>> draw_quads(const ManifoldMesh& mesh, const Quad
         for (const Index e : left) {
             if (context.cancelled())
                 return Context::cancelled_error("layout");
-            if (!drawing.draw(e))
+            if (!drawing.draw(e, straight[e]))
                 put_off.push_back(e);
         }
         if (put_off.size() == left.size())

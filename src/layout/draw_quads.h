@@ -17,7 +17,8 @@ struct DrawnCurve {
 
 //! Draws a quad complex on a mesh of the same topology: a path for every edge, in the edge's
 //! direction, without crossings, so that every quad is a disk with its four sides. `vertices` are
-//! distinct mesh vertices, one for each of the complex; `curves` holds all boundary edges.
+//! distinct mesh vertices, one for each of the complex; `curves` holds all boundary edges;
+//! `straight` has, for an edge, a straight way along mesh edges if there is one, else nothing.
 //!
 //! Edges are drawn one by one, each as a short path that leaves its ends between the right
 //! neighbours, quad after quad. A path that would divide the mesh other than the complex is put
@@ -29,6 +30,7 @@ struct DrawnCurve {
 Result<std::vector<SurfacePath>> draw_quads(const ManifoldMesh& mesh, const QuadComplex& complex,
                                             const std::vector<Index>& vertices,
                                             const std::vector<DrawnCurve>& curves,
+                                            const std::vector<std::vector<Index>>& straight,
                                             Context& context);
 
 } // namespace bot2nurbs

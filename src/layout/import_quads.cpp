@@ -44,6 +44,12 @@ std::string topology_text(int euler, Index loops)
            (loops == 1 ? " boundary loop" : " boundary loops");
 }
 
+bool runs_along_edges(const SurfacePath& path)
+{
+    return std::all_of(path.nodes.begin(), path.nodes.end(),
+                       [](const PathNode& n) { return n.is_vertex(); });
+}
+
 class Importer {
 public:
     Importer(const ManifoldMesh& source, const QuadMesh& quads, const MeshFeatures& features,
@@ -83,7 +89,8 @@ public:
         if (context_.cancelled())
             return Context::cancelled_error("layout");
         Result<std::vector<SurfacePath>> paths =
-            draw_quads(board.carrier.mesh, complex_, board.vertices, *curves, context_);
+            draw_quads(board.carrier.mesh, complex_, board.vertices, *curves,
+                       ways_along_source(complex_, source_, board), context_);
         if (!paths)
             return paths.error().code == ErrorCode::cancelled ? paths.error()
                                                               : named_edge(paths.error());
@@ -224,9 +231,10 @@ private:
                     {complex_.edge(h), complex_.halfedge_of_edge(complex_.edge(h)) != h});
             patches.add_face(std::move(sides));
         }
-        for (const CurveEdge& e : match.edges)
-            if (!match.lines[e.line].boundary)
-                patches.mark(e.edge, mark_of(FeatureKind::crease));
+        // What runs along mesh edges is straight, or a curve that must stay.
+        for (Index e = 0; e < complex_.edge_count(); ++e)
+            if (runs_along_edges(patches.paths()[e].geometry))
+                patches.mark(e, mark_of(FeatureKind::smooth_seam));
         if (Status failed = straighten_paths(patches, straightening_passes, context_))
             return *failed;
 

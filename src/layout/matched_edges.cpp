@@ -62,6 +62,19 @@ std::map<std::pair<Index, Index>, double> covered_lengths(const CurveMatch& matc
     return covered;
 }
 
+// The vertices of the source edge or face that a carrier vertex is inside of, or its own.
+std::set<Index> support_of(Index v, const ManifoldMesh& source, const CarrierMesh& carrier)
+{
+    if (v < source.vertex_count())
+        return {v};
+    const SourcePoint& p = carrier.vertex_source[v];
+    std::set<Index> result;
+    for (std::size_t k = 0; k < 3; ++k)
+        if (p.bary[k] != 0.0)
+            result.insert(source.triangle(p.face)[k]);
+    return result;
+}
+
 } // namespace
 
 std::vector<CurveLine> followable_lines(const ManifoldMesh& mesh,
@@ -103,6 +116,42 @@ drawn_along_lines(const CurveMatch& match, const ManifoldMesh& source, const Qua
         curves.push_back(std::move(curve));
     }
     return curves;
+}
+
+std::vector<std::vector<Index>>
+ways_along_source(const QuadComplex& quads, const ManifoldMesh& source, const QuadCarrier& board)
+{
+    std::vector<std::set<Index>> support; // Per vertex of the quads.
+    for (const Index v : board.vertices)
+        support.push_back(support_of(v, source, board.carrier));
+    std::vector<CurveLine> lines;
+    std::vector<Index> edge_of_line;
+    for (Index e = 0; e < quads.edge_count(); ++e) {
+        const Index h = quads.halfedge_of_edge(e);
+        std::set<Index> both = support[quads.from(h)];
+        both.insert(support[quads.to(h)].begin(), support[quads.to(h)].end());
+        if (both.size() != 2)
+            continue;
+        const Index u = *both.begin(), v = *both.rbegin();
+        if (source.find_halfedge(u, v) == invalid_index &&
+            source.find_halfedge(v, u) == invalid_index)
+            continue;
+        lines.emplace_back(source, std::vector<Index>{u, v}, false);
+        edge_of_line.push_back(e);
+    }
+    const auto chains = lines_on_carrier(lines, source, board.carrier);
+    std::vector<std::vector<Index>> ways(quads.edge_count());
+    for (std::size_t l = 0; l < lines.size(); ++l) {
+        const Index h = quads.halfedge_of_edge(edge_of_line[l]);
+        const Index a = board.vertices[quads.from(h)], b = board.vertices[quads.to(h)];
+        std::vector<Index>& way = ways[edge_of_line[l]];
+        way = part_of(chains[l], a, b);
+        if (way.empty()) {
+            way = part_of(chains[l], b, a);
+            std::reverse(way.begin(), way.end());
+        }
+    }
+    return ways;
 }
 
 std::vector<Index> vertices_on_corners(const CurveMatch& match, const std::vector<char>& is_corner)

@@ -21,6 +21,11 @@ std::vector<CurveLine> followable_lines(const ManifoldMesh& mesh,
 Result<std::vector<DrawnCurve>>
 drawn_along_lines(const CurveMatch& match, const ManifoldMesh& source, const QuadCarrier& board);
 
+//! For every edge of the quads whose ends lie on one edge of the source: the part of that edge
+//! between them, as carrier vertices; nothing for the others.
+std::vector<std::vector<Index>>
+ways_along_source(const QuadComplex& quads, const ManifoldMesh& source, const QuadCarrier& board);
+
 //! Vertices of the quads that lie on corners of the mesh, ascending.
 std::vector<Index> vertices_on_corners(const CurveMatch& match, const std::vector<char>& is_corner);
 

@@ -271,9 +271,9 @@ Result<std::vector<QuadMesh>> split_quads(const PolygonMesh& mesh)
     const Result<std::vector<Index>> piece = orient(*quads);
     if (!piece)
         return piece.error();
-    if (std::optional<Error> bad = check_fans(*quads, static_cast<Index>(mesh.positions.size())))
-        return *bad;
     if (std::optional<Error> bad = check_junctions(mesh.positions, *quads))
+        return *bad;
+    if (std::optional<Error> bad = check_fans(*quads, static_cast<Index>(mesh.positions.size())))
         return *bad;
 
     std::vector<QuadMesh> result;

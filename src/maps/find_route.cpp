@@ -39,24 +39,48 @@ struct Open {
 
 } // namespace
 
+bool RouteFinder::is_open(const std::vector<Index>& chain, const PathWeb::Sector& at_a,
+                          const PathWeb::Sector& at_b) const
+{
+    const ManifoldMesh& mesh = web_.mesh();
+    const auto leaves = [&mesh](const PathWeb::Sector& sector, Index to) {
+        return std::any_of(sector.halfedges.begin(), sector.halfedges.end(),
+                           [&](Index h) { return mesh.to(h) == to; });
+    };
+    const std::size_t n = chain.size();
+    if (n < 2 || !leaves(at_a, chain[1]) || !leaves(at_b, chain[n - 2]))
+        return false;
+    for (std::size_t i = 0; i + 1 < n; ++i) {
+        const Index h = mesh.find_halfedge(chain[i], chain[i + 1]);
+        if (h == invalid_index || !web_.is_free(h))
+            return false;
+        if (i > 0 && (web_.is_site(chain[i]) || web_.on_curve(chain[i])))
+            return false;
+    }
+    return true;
+}
+
 std::optional<PathWeb::Route> RouteFinder::find(Index a, const PathWeb::Sector& at_a, Index b,
                                                 const PathWeb::Sector& at_b,
-                                                const GuidePlane& guide)
+                                                const GuidePlane& guide,
+                                                const std::vector<Index>& chain)
 {
     const ManifoldMesh& mesh = web_.mesh();
     const Vec3 start = mesh.position(a), goal = mesh.position(b);
     PathWeb::Route route;
     route.a = a;
     route.b = b;
-    // An edge from a to b that nothing crosses is the shortest way within its two faces.
     double best = INFINITY;
-    for (const Index h : at_a.halfedges)
-        if (mesh.to(h) == b && web_.is_free(h) &&
-            std::find(at_b.halfedges.begin(), at_b.halfedges.end(), mesh.twin(h)) !=
-                at_b.halfedges.end()) {
-            route.along = h;
-            best = norm(goal - start);
-        }
+    if (is_open(chain, at_a, at_b)) {
+        route.along = chain;
+        best = 0.0;
+        for (std::size_t i = 1; i < chain.size(); ++i)
+            best += norm(mesh.position(chain[i]) - mesh.position(chain[i - 1]));
+    } else if (is_open({a, b}, at_a, at_b)) {
+        // The shortest way within the two faces of the edge.
+        route.along = {a, b};
+        best = norm(goal - start);
+    }
 
     ++stamp_;
     visits_.resize(web_.stretch_count());
@@ -125,11 +149,11 @@ std::optional<PathWeb::Route> RouteFinder::find(Index a, const PathWeb::Sector& 
             });
     }
     if (last == invalid_index) {
-        if (route.along == invalid_index)
+        if (route.along.empty())
             return std::nullopt;
         return route;
     }
-    route.along = invalid_index;
+    route.along.clear();
     route.to = at_b.wedges[target];
     for (Index n = last; n != invalid_index; n = visits_[n].before) {
         route.stretches.push_back(visits_[n].stretch);

@@ -23,12 +23,18 @@ public:
 
     //! The shortest route between two sites that leaves each within the given sector, its length
     //! that of the polyline through the places nearest to the guide plane: exact for a route along
-    //! the plane. Empty when the sectors do not belong to one region of the mesh. Cost that of
-    //! Dijkstra's algorithm over the stretches nearer than b (A* search).
+    //! the plane. `chain`, mesh vertices from a to b joined by edges, is a way to be taken where it
+    //! is open and no longer than others; it may be empty. No result when the sectors do not belong
+    //! to one region of the mesh. Cost that of Dijkstra's algorithm over the stretches nearer than
+    //! b (A* search).
     std::optional<PathWeb::Route> find(Index a, const PathWeb::Sector& at_a, Index b,
-                                       const PathWeb::Sector& at_b, const GuidePlane& guide);
+                                       const PathWeb::Sector& at_b, const GuidePlane& guide,
+                                       const std::vector<Index>& chain);
 
 private:
+    //! Whether a path can be laid along a chain of mesh edges.
+    bool is_open(const std::vector<Index>& chain, const PathWeb::Sector& at_a,
+                 const PathWeb::Sector& at_b) const;
     struct Visit {
         std::uint32_t stamp = 0;
         bool done = false;

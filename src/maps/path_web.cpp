@@ -2,7 +2,6 @@
 #include "maps/path_web.h"
 
 #include <algorithm>
-#include <cassert>
 #include <tuple>
 
 namespace bot2nurbs {
@@ -266,6 +265,21 @@ Index PathWeb::insert_crossing(const Stretch& s, double t, Index path)
     return c;
 }
 
+void PathWeb::set_closed(const Path& path, bool closed)
+{
+    Index from = path.a;
+    for (std::size_t i = 0; i <= path.inner.size(); ++i) {
+        const Index to = i < path.inner.size() ? path.inner[i] : path.b;
+        Index h = mesh_.find_halfedge(from, to);
+        if (h == invalid_index)
+            h = mesh_.find_halfedge(to, from);
+        closed_[mesh_.edge(h)] = closed;
+        from = to;
+    }
+    for (const Index v : path.inner)
+        on_curve_[v] = closed;
+}
+
 void PathWeb::add_curve(const std::vector<Index>& vertices)
 {
     const Index p = path_count();
@@ -274,31 +288,22 @@ void PathWeb::add_curve(const std::vector<Index>& vertices)
     path.a = vertices.front();
     path.b = vertices.back();
     path.inner.assign(vertices.begin() + 1, vertices.end() - 1);
+    set_closed(path, true);
     paths_.push_back(std::move(path));
     end_.resize(end_.size() + 2);
-    for (std::size_t i = 0; i + 1 < n; ++i) {
-        Index h = mesh_.find_halfedge(vertices[i], vertices[i + 1]);
-        if (h == invalid_index)
-            h = mesh_.find_halfedge(vertices[i + 1], vertices[i]);
-        closed_[mesh_.edge(h)] = 1;
-    }
-    for (const Index v : vertices)
-        on_curve_[v] = 1;
     add_end_along(end_of(p, false), vertices[0], vertices[1]);
     add_end_along(end_of(p, true), vertices[n - 1], vertices[n - 2]);
 }
 
 void PathWeb::add(const Route& route)
 {
+    if (!route.along.empty()) {
+        add_curve(route.along);
+        return;
+    }
     const Index p = path_count();
     paths_.push_back({route.a, route.b, invalid_index, invalid_index, {}});
     end_.resize(end_.size() + 2);
-    if (route.along != invalid_index) {
-        closed_[mesh_.edge(route.along)] = 1;
-        add_end_along(end_of(p, false), route.a, route.b);
-        add_end_along(end_of(p, true), route.b, route.a);
-        return;
-    }
     Index last = invalid_index;
     for (std::size_t i = 0; i < route.stretches.size(); ++i) {
         const Index c = insert_crossing(route.stretches[i], route.t[i], p);
@@ -315,9 +320,8 @@ void PathWeb::remove_last()
 {
     const Index p = path_count() - 1;
     const Path& path = paths_.back();
-    assert(path.inner.empty());
     if (path.first == invalid_index)
-        closed_[mesh_.edge(end_[end_of(p, false)].corner)] = 0;
+        set_closed(path, false);
     while (!crossings_.empty() && crossings_.back().path == p) {
         const Crossing& c = crossings_.back();
         const Index e = mesh_.edge(c.halfedge);

@@ -43,13 +43,14 @@ public:
         std::vector<Index> halfedges;
     };
     //! A way for a path that crosses no other: through stretches, each as seen from the face it
-    //! leaves, or along one mesh edge.
+    //! leaves, or along mesh edges.
     struct Route {
         Index a = invalid_index, b = invalid_index; //!< Mesh vertices.
         Wedge from, to;
         std::vector<Stretch> stretches;
-        std::vector<double> t;       //!< Wanted place of each crossing, as PathNode::t.
-        Index along = invalid_index; //!< The halfedge from a to b, where it needs no stretch.
+        std::vector<double> t; //!< Wanted place of each crossing, as PathNode::t.
+        //! Where it needs no stretch: the mesh vertices from a to b, neighbours joined by edges.
+        std::vector<Index> along;
     };
 
     //! `sites` are the mesh vertices where paths may end.
@@ -63,7 +64,7 @@ public:
     void add_curve(const std::vector<Index>& vertices);
     //! Adds a path. \pre nothing was added since the route was found
     void add(const Route& route);
-    //! Takes the path added last, which must not be a curve, away again.
+    //! Takes the path added last, which must not be a curve of the boundary, away again.
     void remove_last();
 
     //! Path ends are numbered 2 p at the start and 2 p + 1 at the end of path p.
@@ -83,7 +84,7 @@ public:
     bool is_site(Index vertex) const { return site_of_[vertex] != invalid_index; }
     //! The number of a vertex among the sites.
     Index site_number(Index vertex) const { return site_of_[vertex]; }
-    //! Whether a curve runs through a vertex or ends there.
+    //! Whether a path along mesh edges runs through a vertex that is no site.
     bool on_curve(Index vertex) const { return on_curve_[vertex] != 0; }
     //! No path can cross the edge of h: it is part of a curve or the boundary.
     bool is_closed(Index h) const { return closed_[mesh_.edge(h)] != 0; }
@@ -139,7 +140,7 @@ private:
     struct Path {
         Index a = invalid_index, b = invalid_index;
         Index first = invalid_index, last = invalid_index; //!< Crossings.
-        std::vector<Index> inner;                          //!< Of a curve: the vertices on its way.
+        std::vector<Index> inner; //!< Along mesh edges: vertices on the way.
     };
     //! How a path leaves the vertex where it ends.
     struct End {
@@ -168,6 +169,8 @@ private:
     void add_end(Index end, Index vertex, const Wedge& wedge, Index crossing);
     void add_end_along(Index end, Index vertex, Index other);
     void drop_end(Index end, Index vertex);
+    //! Closes the mesh edges of a path along them, or opens them again.
+    void set_closed(const Path& path, bool closed);
     Index insert_crossing(const Stretch& s, double t, Index path);
     void space_evenly(Index edge);
 
