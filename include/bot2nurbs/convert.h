@@ -25,6 +25,22 @@ enum class FeatureMode {
     all,       //!< All creases of the angle asked for.
 };
 
+//! A length as people give it.
+struct Length {
+    double value = 0.0;    //!< In units of the input, or as a share.
+    bool relative = false; //!< A share of the diagonal of the box of the whole input.
+
+    //! In units of an input whose box has this diagonal.
+    double of(double diagonal) const { return relative ? value * diagonal : value; }
+};
+
+//! What becomes of the connected components of the input.
+enum class ComponentMode {
+    all,     //!< Each is a B-Rep of its own, all in one file.
+    largest, //!< Only the one with the largest area is converted.
+    split,   //!< As all, in files of their own: part.3dm becomes part-1.3dm, part-2.3dm, ...
+};
+
 //! Whether the result must be closed.
 enum class Closure {
     as_input, //!< Solids of closed components, open surfaces of open ones.
@@ -52,6 +68,10 @@ struct ConvertOptions {
     FeatureOptions feature_options;
     Closure closure = Closure::as_input;
 
+    ComponentMode components = ComponentMode::all;
+    //! Holes up to this size, the diagonal of their box, are filled before anything else; >= 0.
+    std::optional<Length> fill_holes;
+
     bool repair = true;  //!< Make harmless repairs; false: reject an input that needs any.
     bool strict = false; //!< Reject self-intersecting input instead of warning.
 
@@ -67,6 +87,12 @@ struct ConvertOptions {
     std::optional<std::string> domain_in;
     //! Where to write the domains of all components.
     std::optional<std::string> domain_out;
+    //! Constraint file that the automatic layout keeps to; components that it does not name are
+    //! laid out freely.
+    std::optional<std::string> constraints;
+    //! Where to write the constraints that the layouts kept to and the vertices they chose, as
+    //! constraints.
+    std::optional<std::string> constraints_out;
     //! Where to write a tessellation (binary PLY) for inspection: per vertex the normal, patch,
     //! parameters, signed distance to the source, and at patch corners the valence.
     std::optional<std::string> tessellation;
@@ -90,7 +116,8 @@ struct ConvertOptions {
 //! 2. the same bytes for any thread count;
 //! 3. coordinates come out in the place and units they came in.
 //! Cancel through the context. Errors: those of the stages; open_mesh, self_intersecting (with
-//! strict), stale_domain, bad_option, cannot_write.
+//! strict), stale_domain, constraint_conflict,
+//! bad_option, cannot_write.
 Result<ConvertReport> convert(const ConvertOptions& options, Context& context);
 
 //! What the first steps of convert() say of an input.

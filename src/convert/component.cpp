@@ -4,6 +4,7 @@
 #include "bot2nurbs/detect_features.h"
 #include "bot2nurbs/domain_samples.h"
 #include "bot2nurbs/layout.h"
+#include "convert/constraints_input.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -132,6 +133,27 @@ void to_input_units(DistanceStatistics& s, const Frame& frame)
     s.worst = frame.from_unit(s.worst);
 }
 
+//! The largest distances are those proven to be attained. Distances of samples from the mesh are
+//! exact too, and may be larger on the side that is less far, whose bounds are loose; those from
+//! the surface are what a local search ended with.
+void use_proven(Deviation& sampled, const HausdorffBound& proven)
+{
+    sampled.source_to_surface.max = proven.source_to_surface.lower;
+    sampled.source_to_surface.worst = proven.source_to_surface.worst.point;
+    if (proven.surface_to_source.lower > sampled.surface_to_source.max) {
+        sampled.surface_to_source.max = proven.surface_to_source.lower;
+        sampled.surface_to_source.worst = proven.surface_to_source.worst.point;
+        sampled.worst_patch = proven.surface_to_source.worst.surface.quad;
+    }
+}
+
+void to_input_units(CurveDeviation& c, const Frame& frame)
+{
+    c.length *= frame.size;
+    to_input_units(c.source_to_surface, frame);
+    to_input_units(c.surface_to_source, frame);
+}
+
 void to_input_units(FitSummary& fit, const Frame& frame)
 {
     for (FitRound& round : fit.rounds) {
@@ -153,8 +175,8 @@ void log_rounds(const FitSummary& fit, const Context& context)
 
 } // namespace
 
-Result<ConvertedComponent> convert_component(const MeshComponent& component,
-                                             SuppliedLayout supplied, const ConvertOptions& options,
+Result<ConvertedComponent> convert_component(const MeshComponent& component, DomainWishes wishes,
+                                             const ConvertOptions& options,
                                              const std::vector<KnotForm>& forms,
                                              const std::string& stage_suffix, Context& context)
 {
@@ -181,11 +203,11 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
         return features.error();
 
     stage("layout");
-    if (supplied.domain) {
-        result.domain = std::move(*supplied.domain);
-    } else if (supplied.quads) {
-        Result<QuadDomain> domain = import_layout(*unit, *supplied.quads, frame, *features,
-                                                  outcome.quads.emplace(), context);
+    if (wishes.supplied) {
+        result.domain = std::move(*wishes.supplied);
+    } else if (wishes.quads) {
+        Result<QuadDomain> domain =
+            import_layout(*unit, *wishes.quads, frame, *features, outcome.quads.emplace(), context);
         if (!domain)
             return domain.error();
         result.domain = std::move(*domain);
@@ -194,12 +216,16 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
         LayoutOptions layout_options;
         layout_options.patches = options.patches;
         layout_options.features = feature_paths(*features);
+        layout_options.constraints = std::move(wishes.constraints);
         layout_options.seed = options.seed;
         Result<LayoutResult> layout = build_layout(*unit, layout_options, context);
         if (!layout)
             return layout.error();
         result.domain = std::move(layout->domain);
         result.domain.source_signature = signature(component.mesh);
+        if (options.constraints_out)
+            result.constraints = constraints_used(layout_options.constraints,
+                                                  layout_options.features, *unit, result.domain);
         outcome.layout = layout->summary;
         for (const std::string& note : layout->summary.notes)
             context.log(LogLevel::info, "layout: " + note);
@@ -223,8 +249,8 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
         const Spread& detours = outcome.quality.straightness;
         const DomainEdge& longest = result.domain.edges[detours.most_at];
         outcome.quads->largest_detour = detours.most;
-        outcome.quads->detour_edge = {supplied.quads->source_vertex[longest.a],
-                                      supplied.quads->source_vertex[longest.b]};
+        outcome.quads->detour_edge = {wishes.quads->source_vertex[longest.a],
+                                      wishes.quads->source_vertex[longest.b]};
     }
     if (forms.empty())
         return result;
@@ -256,10 +282,23 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
     outcome.deviation = *deviation;
     to_input_units(outcome.deviation.source_to_surface, frame);
     to_input_units(outcome.deviation.surface_to_source, frame);
+    outcome.curves = measure_curves(result.domain, fit->surface);
+    for (CurveDeviation& loop : outcome.curves.boundary)
+        to_input_units(loop, frame);
+    if (outcome.curves.creases)
+        to_input_units(*outcome.curves.creases, frame);
     result.surface = std::move(fit->surface);
     result.surface.transform(frame.size, frame.centre);
     // Of the coordinates that are written: rounding far from the origin is part of the result.
     outcome.continuity = measure_continuity(result.domain.complex, result.surface);
+
+    stage("bound");
+    const Result<HausdorffBound> bound =
+        bound_hausdorff(component.mesh, result.domain.complex, result.surface, {}, context);
+    if (!bound)
+        return bound.error();
+    outcome.bound = *bound;
+    use_proven(outcome.deviation, *bound);
 
     stage("brep");
     for (const KnotForm form : forms) {

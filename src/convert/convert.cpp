@@ -4,6 +4,7 @@
 #include "bot2nurbs/domain_file.h"
 #include "convert/cage_input.h"
 #include "convert/component.h"
+#include "convert/constraints_input.h"
 #include "convert/domain_input.h"
 #include "convert/input.h"
 #include "convert/quads_input.h"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <utility>
@@ -68,6 +70,15 @@ KnotForm form_of(Format format, const ConvertOptions& options)
     return KnotForm::c1;
 }
 
+//! The path of one component's file.
+std::string part_path(const std::string& path, std::size_t number)
+{
+    fs::path part(path);
+    part.replace_filename(part.stem().string() + fmt::format("-{}", number) +
+                          part.extension().string());
+    return part.string();
+}
+
 Status check_folder(const std::string& path)
 {
     const fs::path folder =
@@ -93,6 +104,38 @@ Status check_folder(const std::string& path)
 Error bad_option(std::string message)
 {
     return {ErrorCode::bad_option, std::move(message), invalid_index};
+}
+
+//! The first option that contradicts the one that says where the layout comes from.
+std::optional<Error> check_layout(const ConvertOptions& o)
+{
+    const std::pair<bool, const char*> sources[] = {{o.cage, "--cage"},
+                                                    {o.quads.has_value(), "--layout quads"},
+                                                    {o.domain_in.has_value(), "--domain-in"}};
+    const std::pair<bool, const char*> automatic[] = {
+        {o.patches.has_value(), "--patches"},
+        {o.constraints.has_value(), "--constraints"},
+        {o.constraints_out.has_value(), "--constraints-out"}};
+    const std::pair<bool, const char*> of_mesh[] = {
+        {o.domain_out.has_value(), "--domain-out"},
+        {o.fill_holes.has_value(), "--fill-holes"},
+        {o.components == ComponentMode::largest, "--components largest"},
+        {o.strict, "--strict"}};
+    const char* source = nullptr;
+    for (const auto& [given, name] : sources) {
+        if (given && source)
+            return bad_option(fmt::format("{} contradicts {}: both are layouts", name, source));
+        if (given)
+            source = name;
+    }
+    for (const auto& [given, name] : automatic)
+        if (given && source)
+            return bad_option(
+                fmt::format("{} is about the automatic layout: it contradicts {}", name, source));
+    for (const auto& [given, name] : of_mesh)
+        if (given && o.cage)
+            return bad_option(fmt::format("{} is about a mesh, but --cage has none", name));
+    return std::nullopt;
 }
 
 void add_input_warnings(const PreparedInput& input, ConvertReport& report)
@@ -169,6 +212,17 @@ void add_detour_warnings(ConvertReport& report)
                  c.quads->detour_edge[0]});
 }
 
+Result<std::string> to_bytes(Format format, const std::vector<Brep>& breps,
+                             const WriteOptions& options)
+{
+    switch (format) {
+    case Format::archive_3dm: return brep_to_3dm(breps, options);
+    case Format::step: return brep_to_step(breps, options);
+    case Format::occ_brep: break;
+    }
+    return brep_to_occ_brep(breps, options);
+}
+
 struct PendingFile {
     OutputFile file;
     std::string bytes;
@@ -194,18 +248,20 @@ Result<std::vector<PendingFile>> make_files(const ConvertOptions& options, const
         const Format format = *format_of(path);
         const std::size_t form = static_cast<std::size_t>(
             std::find(forms.begin(), forms.end(), form_of(format, options)) - forms.begin());
+        const bool split = options.components == ComponentMode::split;
         std::vector<Brep> breps;
         for (std::size_t c = 0; c < components.size(); ++c) {
             breps.push_back(components[c].breps[form]);
             breps.back().name =
                 write.title + (components.size() > 1 ? "-" + std::to_string(c + 1) : "");
+            if (!split && c + 1 < components.size())
+                continue;
+            Result<std::string> bytes = to_bytes(format, breps, write);
+            if (!bytes)
+                return bytes.error();
+            add(split ? part_path(path, c + 1) : path, name_of(format), std::move(*bytes));
+            breps.clear();
         }
-        Result<std::string> bytes = format == Format::archive_3dm ? brep_to_3dm(breps, write)
-                                    : format == Format::step      ? brep_to_step(breps, write)
-                                                                  : brep_to_occ_brep(breps, write);
-        if (!bytes)
-            return bytes.error();
-        add(path, name_of(format), std::move(*bytes));
     }
     if (options.tessellation) {
         std::vector<TessellationPart> parts;
@@ -216,6 +272,12 @@ Result<std::vector<PendingFile>> make_files(const ConvertOptions& options, const
         if (!bytes)
             return bytes.error();
         add(*options.tessellation, "ply", std::move(*bytes));
+    }
+    if (options.constraints_out) {
+        std::vector<DomainConstraints> constraints;
+        for (ConvertedComponent& c : components)
+            constraints.push_back(std::move(c.constraints));
+        add(*options.constraints_out, "constraints", constraint_list_to_json(constraints));
     }
     if (options.domain_out) {
         std::vector<QuadDomain> domains;
@@ -232,7 +294,7 @@ std::optional<Error> ConvertOptions::check() const
 {
     if (input.empty())
         return bad_option("no input file is named");
-    if (outputs.empty() && !domain_out && !tessellation)
+    if (outputs.empty() && !domain_out && !constraints_out && !tessellation)
         return bad_option("no output file is named");
     for (const std::string& path : outputs) {
         const std::optional<Format> format = format_of(path);
@@ -246,23 +308,10 @@ std::optional<Error> ConvertOptions::check() const
     if (patches && *patches < fewest_patches)
         return bad_option(
             fmt::format("--patches {} is too few: at least {}", *patches, fewest_patches));
-    if (patches && domain_in)
-        return bad_option("--patches steers the automatic layout: it contradicts --domain-in");
-    if (patches && quads)
-        return bad_option("--patches steers the automatic layout: it contradicts --layout quads");
-    if (quads && domain_in)
-        return bad_option("--layout quads contradicts --domain-in: both are layouts");
-    if (cage) {
-        const char* other = patches      ? "--patches"
-                            : quads      ? "--layout quads"
-                            : domain_in  ? "--domain-in"
-                            : domain_out ? "--domain-out"
-                            : strict     ? "--strict"
-                                         : nullptr;
-        if (other)
-            return bad_option(fmt::format(
-                "{} needs a mesh, but with --cage the input is the layout itself", other));
-    }
+    if (std::optional<Error> failed = check_layout(*this))
+        return failed;
+    if (fill_holes && !(fill_holes->value >= 0.0 && std::isfinite(fill_holes->value)))
+        return bad_option("the size of holes to fill must be a length that is not negative");
     if (std::optional<Error> failed = fit.check())
         return failed;
     if (std::optional<Error> failed = feature_options.check())
@@ -273,16 +322,20 @@ std::optional<Error> ConvertOptions::check() const
     std::vector<std::string> paths = outputs;
     if (domain_out)
         paths.push_back(*domain_out);
+    if (constraints_out)
+        paths.push_back(*constraints_out);
     if (tessellation)
         paths.push_back(*tessellation);
     for (std::size_t i = 0; i < paths.size(); ++i) {
         if (std::find(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), paths[i]) !=
             paths.begin() + static_cast<std::ptrdiff_t>(i))
             return bad_option(fmt::format("{} is to be written twice", paths[i]));
-        std::error_code unknown;
-        for (const std::string& read : {input, quads.value_or(input)})
-            if (fs::equivalent(paths[i], read, unknown))
+        for (const auto& read :
+             {std::optional<std::string>(input), domain_in, quads, constraints}) {
+            std::error_code unknown;
+            if (read && fs::equivalent(paths[i], *read, unknown))
                 return bad_option(fmt::format("{} is read: it would be overwritten", paths[i]));
+        }
         if (Status failed = check_folder(paths[i]))
             return failed;
     }
@@ -332,6 +385,14 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
         quads = std::move(*read);
     }
 
+    std::vector<DomainConstraints> constraints(mesh.components.size());
+    if (options.constraints) {
+        Result<std::vector<DomainConstraints>> read = read_constraints(*options.constraints, mesh);
+        if (!read)
+            return read.error();
+        constraints = std::move(*read);
+    }
+
     // The knot forms that the outputs need, each made once.
     std::vector<KnotForm> forms;
     for (const std::string& path : options.outputs) {
@@ -345,14 +406,15 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
     std::vector<ConvertedComponent> components;
     const std::size_t count = mesh.components.size();
     for (std::size_t c = 0; c < count; ++c) {
-        SuppliedLayout layout;
+        DomainWishes wishes;
         if (!supplied.empty())
-            layout.domain = std::move(supplied[c]);
+            wishes.supplied = std::move(supplied[c]);
         if (options.quads)
-            layout.quads = std::move(quads[c]);
+            wishes.quads = std::move(quads[c]);
+        wishes.constraints = std::move(constraints[c]);
         const std::string suffix = count > 1 ? fmt::format(" {}/{}", c + 1, count) : "";
         Result<ConvertedComponent> converted = convert_component(
-            mesh.components[c], std::move(layout), options, forms, suffix, context);
+            mesh.components[c], std::move(wishes), options, forms, suffix, context);
         if (!converted) {
             Error error = converted.error();
             if (count > 1 && error.code != ErrorCode::cancelled)

@@ -102,7 +102,7 @@ class Conversion(CliTest):
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertEqual(run.stdout, "")
         self.assertEqual(sorted(os.listdir(self.folder)), ["a.3dm", "a.brep", "a.step", "a.stp"])
-        for word in ("patches", "extraordinary", "rms", "max", "joins", "solid     yes", "a.3dm"):
+        for word in ("patches", "extraordinary", "rms", "max", "bound", "joins", "solid     yes", "a.3dm"):
             self.assertIn(word, run.stderr)
         self.assertNotIn("\033", run.stderr)
         self.assertNotIn("\r", run.stderr)
@@ -119,6 +119,7 @@ class Conversion(CliTest):
         self.assertEqual(report["continuity"]["max_gap"], 0)
         self.assertLessEqual(report["continuity"]["max_g1_angle_deg"], 1e-8)
         self.assertLess(report["deviation"]["rms_relative"], 5e-3)
+        self.assertLessEqual(report["deviation"]["max"], report["deviation"]["upper_bound"])
         self.assertEqual(report["outputs"][0]["bytes"], os.path.getsize(self.folder / "a.3dm"))
         names = [stage["name"] for stage in report["stages"]]
         self.assertEqual(names[:3], ["read", "check", "repair"])
@@ -298,12 +299,12 @@ class BadInput(CliTest):
             self.assertIn("finite", run.stderr)
             self.assertFalse((self.folder / "a.3dm").exists())
 
-    def test_an_open_mesh_is_refused_by_name(self):
+    def test_an_open_mesh_is_no_solid(self):
         vertices, faces = read_obj(SPHERE)
         mesh = self.write("a.off", off(vertices, faces[1:]))
-        run = self.assert_refused(5, "1 boundary loop", mesh, "a.3dm")
+        run = self.assert_refused(5, "1 boundary loop", mesh, "a.3dm", "--solid")
         self.assertIn("vertex", run.stderr)
-        self.assertIn("not supported yet", run.stderr)
+        self.assertIn("leave out --solid", run.stderr)
 
     def test_a_closed_mesh_without_volume_is_rejected(self):
         vertices, faces = read_obj(SPHERE)
@@ -346,7 +347,7 @@ class BadInput(CliTest):
     def test_the_report_tells_of_the_failure(self):
         vertices, faces = read_obj(SPHERE)
         mesh = self.write("a.off", off(vertices, faces[1:]))
-        run = self.run_command(mesh, "a.3dm", "--json", "-")
+        run = self.run_command(mesh, "a.3dm", "--solid", "--json", "-")
         self.assertEqual(run.returncode, 5)
         report = json.loads(run.stdout)
         rules = json.loads((ROOT / "docs/schema/report.schema.json").read_text())
@@ -370,6 +371,104 @@ class BadInput(CliTest):
         self.assertIn("warning:", run.stderr)
 
 
+class OpenMeshes(CliTest):
+    def open_sphere(self):
+        vertices, faces = read_obj(SPHERE)
+        return self.write("a.off", off(vertices, [f for f in faces if 0 not in f]))
+
+    def report(self, *arguments):
+        run = self.run_command(*arguments, "--json", "r.json")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        report = json.loads((self.folder / "r.json").read_text())
+        rules = json.loads((ROOT / "docs/schema/report.schema.json").read_text())
+        self.assertEqual(schema.errors(report, rules), [])
+        return report
+
+    def test_the_report_measures_every_boundary_loop_both_ways(self):
+        report = self.report(self.open_sphere(), "a.3dm", "--open")
+        self.assertFalse(report["brep"]["solid"])
+        [loop] = report["components"][0]["boundary"]
+        limit = 0.002 * report["deviation"]["diagonal"]
+        for side in ("source_to_surface", "surface_to_source"):
+            self.assertGreater(loop[side]["samples"], 0)
+            self.assertLess(loop[side]["max"], limit)
+
+    def test_holes_are_filled_up_to_the_size_asked_for(self):
+        mesh = self.open_sphere()
+        report = self.report(mesh, "a.3dm", "--fill-holes", "50%", "--solid")
+        self.assertTrue(report["brep"]["solid"])
+        [filled] = [r for r in report["input"]["repairs"] if r["code"] == "hole_filled"]
+        self.assertIn("vertex", filled["message"])
+        self.assert_refused(5, "1 boundary loop", mesh, "b.3dm", "--fill-holes", "0.01%", "--solid")
+        run = self.run_command(mesh, "b.3dm", "--fill-holes", "wide")
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("--fill-holes wide", run.stderr)
+
+    def test_components_are_converted_as_asked(self):
+        vertices, faces = read_obj(SPHERE)
+        n = len(vertices)
+        moved = [(0.5 * x + 3, 0.5 * y, 0.5 * z) for x, y, z in vertices]
+        mesh = self.write("two.off", off(
+            moved + vertices, faces + [(a + n, b + n, c + n) for a, b, c in faces]))
+        report = self.report(mesh, "a.3dm")
+        self.assertEqual(len(report["components"]), 2)
+        report = self.report(mesh, "b.3dm", "--components", "largest")
+        self.assertEqual([c["first_face"] for c in report["components"]], [len(faces)])
+        self.assertIn("components_left_out", [w["code"] for w in report["warnings"]])
+        report = self.report(mesh, "c.3dm", "c.step", "--components", "split")
+        self.assertEqual([o["path"] for o in report["outputs"]],
+                         ["c-1.3dm", "c-2.3dm", "c-1.step", "c-2.step"])
+        for output in report["outputs"]:
+            self.assertTrue((self.folder / output["path"]).is_file())
+
+
+class Constraints(CliTest):
+    def constraints(self):
+        return json.loads((self.folder / "c.json").read_text())
+
+    def test_what_a_run_writes_gives_a_domain_with_the_same_vertices(self):
+        run = self.run_command(SPHERE, "--constraints-out", "c.json", "--domain-out", "d.json")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        rules = json.loads((ROOT / "docs/schema/constraints.schema.json").read_text())
+        self.assertEqual(schema.errors(self.constraints(), rules), [])
+        run = self.run_command(SPHERE, "a.3dm", "--constraints", "c.json", "--domain-out", "e.json")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        before, after = (
+            json.loads((self.folder / name).read_text())["components"][0]
+            for name in ("d.json", "e.json")
+        )
+        self.assertLessEqual(len(before["vertices"]), len(after["vertices"]))
+        wanted = [s["vertex"] for s in self.constraints()["sites"] if "vertex" in s]
+        for v in wanted:
+            self.assertIn(v, after["vertices"])
+
+    def test_a_conflict_names_the_items_and_writes_nothing(self):
+        self.run_command(SPHERE, "--constraints-out", "c.json")
+        c = self.constraints()
+        for crossing in ([0, 1], [1, 0]):
+            c["pairings"] = [{"demand": "required", "sites": [0, 1]}]
+            c["adjacencies"] = [{"demand": "forbidden", "sites": crossing}]
+            self.write("c.json", json.dumps(c))
+            run = self.assert_refused(5, "pairing 0", SPHERE, "a.3dm", "--constraints", "c.json")
+            self.assertIn("adjacency 0", run.stderr)
+
+    def test_constraints_of_another_mesh_are_refused(self):
+        self.run_command(SPHERE, "--constraints-out", "c.json")
+        self.assert_refused(5, "signature", str(EXAMPLES / "torso.off"), "a.3dm",
+                            "--constraints", "c.json")
+
+    def test_a_constraint_that_is_misspelt_is_refused_by_pointer(self):
+        self.run_command(SPHERE, "--constraints-out", "c.json")
+        c = self.constraints()
+        c["sites"][3] = {"vertx": 7}
+        self.write("c.json", json.dumps(c))
+        self.assert_refused(5, "/sites/3", SPHERE, "a.3dm", "--constraints", "c.json")
+
+    def test_a_domain_and_constraints_contradict_each_other(self):
+        self.assert_refused(2, "--constraints", SPHERE, "a.3dm", "--constraints", "c.json",
+                            "--domain-in", "d.json")
+
+
 class Check(CliTest):
     def test_a_good_mesh_is_accepted_on_stdout(self):
         run = self.run_command("--check", SPHERE, "--quiet")
@@ -379,7 +478,7 @@ class Check(CliTest):
     def test_a_bad_mesh_is_rejected_with_its_defects(self):
         vertices, faces = read_obj(SPHERE)
         mesh = self.write("a.off", off(vertices, faces[1:]))
-        run = self.run_command("--check", mesh, "--json", "-")
+        run = self.run_command("--check", mesh, "--solid", "--json", "-")
         self.assertEqual(run.returncode, 5)
         report = json.loads(run.stdout)
         self.assertEqual(report["schema"], "bot2nurbs.check/1")
