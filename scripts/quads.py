@@ -21,7 +21,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from corpus import MAX_ANGLE, ROOT, judge_3dm, judge_occ, machine, run_measured
+from corpus import MAX_ANGLE, ROOT, judge_3dm, judge_occ, run_measured
 
 
 def read_mesh(path):
@@ -131,17 +131,17 @@ def convert(arguments, stem, work, binary, judge):
     for path in (*outputs, report_path):
         path.unlink(missing_ok=True)
     log = work / (stem + ".log")
-    code, seconds, _ = run_measured([binary, *arguments, *outputs, "--json", report_path], log)
+    code, _, _ = run_measured([binary, *arguments, *outputs, "--json", report_path], log)
     if code != 0:
         lines = [x for x in log.read_text().splitlines() if x.startswith("error")]
-        return {"error": lines[-1] if lines else f"exit code {code}", "seconds": seconds}, ["exit"]
+        return {"error": lines[-1] if lines else f"exit code {code}"}, ["exit"]
     report = json.loads(report_path.read_text())
     closed = [c["boundary_loops"] == 0 for c in report["components"]]
     opennurbs, _ = judge_3dm(outputs[0], closed)
     volume = abs(report["brep"]["volume"])
     occ = judge_occ(judge, outputs[1], closed, volume)
     row = {
-        "patches": report["domain"]["faces"], "seconds": seconds,
+        "patches": report["domain"]["faces"],
         "extraordinary": report["domain"]["extraordinary"],
         "rms": 100 * report["deviation"]["rms_relative"],
         "max": 100 * report["deviation"]["max_relative"],
@@ -159,26 +159,25 @@ def convert(arguments, stem, work, binary, judge):
 
 def line(name, layout, row):
     if "error" in row:
-        return f"| {name} | {layout} | | | {row['error']} | | | | {row['seconds']:.1f} | |"
+        return f"| {name} | {layout} | | | {row['error']} | | | | |"
     return (
         f"| {name} | {layout} | {row['patches']} | {row['extraordinary']} | {row['rms']:.4f} "
-        f"| {row['max']:.3f} | {row['angle']:.1e} | {row['stretch']:.2f} | {row['seconds']:.1f} "
-        f"| {row['valid']} |"
+        f"| {row['max']:.3f} | {row['angle']:.1e} | {row['stretch']:.2f} | "
+        f"{row['valid']} |"
     )
 
 
 def table(rows, cages, version):
     head = [
         "| model | layout | patches | extraordinary vertices | rms % | max % | join angle ° "
-        "| median stretch | seconds | openNURBS / Open CASCADE |",
-        "|---|---|---:|---:|---:|---:|---:|---:|---:|---|",
+        "| median stretch | openNURBS / Open CASCADE |",
+        "|---|---|---:|---:|---:|---:|---:|---:|---|",
     ]
     return "\n".join([
         "# Layouts of quad meshes, and cages",
         "",
-        f"Written by `scripts/quads.py`; {version}, on {machine()}. Errors are percentages of the diagonal,",
-        "sampled both ways. Stretch is the L2 stretch of a patch's chart, 1 for a similarity. Seconds are",
-        "those of the whole run, writing of `.3dm` and `.step` included.",
+        f"Written by `scripts/quads.py`; {version}, written to `.3dm` and `.step`. Errors are percentages of the diagonal,",
+        "sampled both ways. Stretch is the L2 stretch of a patch's chart, 1 for a similarity.",
         "",
         "## `--layout quads=FILE` beside the automatic layout of as many patches",
         "", *head, *rows,

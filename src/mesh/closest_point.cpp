@@ -80,12 +80,12 @@ ClosestPoint::Hit ClosestPoint::query(const Vec3& p) const
 
 ClosestPoint::Hit ClosestPoint::query(const Vec3& p, double distance_limit) const
 {
-    return search(p, distance_limit, [](const Corners&) { return true; });
+    return search(p, distance_limit, [](const Triangle&) { return true; });
 }
 
 ClosestPoint::Hit ClosestPoint::query_facing(const Vec3& p, const Vec3& direction) const
 {
-    return search(p, INFINITY, [&direction](const Corners& t) {
+    return search(p, INFINITY, [&direction](const Triangle& t) {
         return dot(cross(t.b - t.a, t.c - t.a), direction) > 0.0;
     });
 }
