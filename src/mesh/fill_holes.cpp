@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <fmt/format.h>
+#include <string>
 #include <utility>
 
 namespace bot2nurbs {
@@ -99,6 +100,14 @@ double extent(const ManifoldMesh& mesh, const std::vector<Index>& loop)
     return box.diagonal();
 }
 
+std::string number(double x)
+{
+    char digits[32];
+    const auto end =
+        std::to_chars(digits, digits + sizeof digits, x, std::chars_format::general, 6).ptr;
+    return {digits, end};
+}
+
 // The first vertex of a loop in the numbering of the soup.
 Index first_vertex(const MeshComponent& component, const std::vector<Index>& loop)
 {
@@ -145,13 +154,12 @@ Result<Index> fill(MeshComponent& component, double size, std::vector<RepairNote
         const std::size_t before = triangles.size();
         if (loop.size() > most_edges || !LeastArea(mesh, loop).solve(triangles))
             add_fan(loop, positions, triangles);
-        notes.push_back(
-            {"hole_filled",
-             fmt::format("the hole at vertex {} was filled: {} edges, {:.6g} across, {} "
-                         "triangles added",
-                         first_vertex(component, loop), loop.size(), diagonal,
-                         triangles.size() - before),
-             static_cast<Index>(loop.size()), false});
+        notes.push_back({"hole_filled",
+                         "the hole at vertex " + std::to_string(first_vertex(component, loop)) +
+                             " was filled: " + std::to_string(loop.size()) + " edges, " +
+                             number(diagonal) + " across, " +
+                             std::to_string(triangles.size() - before) + " triangles added",
+                         static_cast<Index>(loop.size()), false});
     }
     if (triangles.size() == mesh.face_count())
         return left;
@@ -178,7 +186,7 @@ Status fill_holes(RepairedMesh& mesh, double size, const Context& context)
 {
     if (!(size >= 0.0) || !std::isfinite(size))
         return Error{ErrorCode::bad_option,
-                     fmt::format("the size of holes to fill must not be negative: {}", size),
+                     "the size of holes to fill must not be negative: " + number(size),
                      invalid_index};
     Index left = 0;
     for (MeshComponent& component : mesh.components) {
@@ -188,12 +196,10 @@ Status fill_holes(RepairedMesh& mesh, double size, const Context& context)
         left += *open;
     }
     if (left > 0)
-        mesh.notes.push_back(
-            {"hole_left",
-             fmt::format("{} boundary loops are larger than {:.6g} across and stay "
-                         "open",
-                         left, size),
-             left, true});
+        mesh.notes.push_back({"hole_left",
+                              std::to_string(left) + " boundary loops are larger than " +
+                                  number(size) + " across and stay open",
+                              left, true});
     return {};
 }
 

@@ -112,6 +112,23 @@ TEST(SplineNetwork, all_patches_at_a_vertex_share_its_position_to_the_bit)
     }
 }
 
+TEST(SplineNetwork, of_two_quads_at_a_vertex_exists_only_between_two_creases)
+{
+    const Domain torus = torus_grid(6, 5);
+    auto quads = torus.complex.quads();
+    const auto [a, b, c, d] = quads[0];
+    const Index m = torus.complex.vertex_count();
+    quads[0] = {a, b, c, m};
+    quads.push_back({a, m, c, d});
+    using Creases = std::vector<std::pair<Index, Index>>;
+    for (const Creases& creases : {Creases{}, Creases{{a, m}}, Creases{{a, m}, {m, c}}}) {
+        const Result<QuadComplex> complex = QuadComplex::build(m + 1, quads, creases);
+        ASSERT_TRUE(complex.ok()) << complex.error().message;
+        const Result<SplineNetwork> network = build_spline_network(*complex, SplineScheme::peters);
+        EXPECT_EQ(network.ok(), creases.size() == 2);
+    }
+}
+
 TEST(SplineNetwork, constraints_are_one_row_per_even_valence_above_four_with_disjoint_supports)
 {
     for (const Domain& d : closed_domains()) {
