@@ -176,7 +176,7 @@ def table(rows, cages, version):
     return "\n".join([
         "# Layouts of quad meshes, and cages",
         "",
-        f"Written by `scripts/quads.py`; {version}, written to `.3dm` and `.step`. Errors are percentages of the diagonal,",
+        f"Written by `scripts/quads.py` with {version}. Errors are percentages of the diagonal,",
         "sampled both ways. Stretch is the L2 stretch of a patch's chart, 1 for a similarity.",
         "",
         "## `--layout quads=FILE` beside the automatic layout of as many patches",

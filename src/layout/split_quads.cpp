@@ -75,12 +75,14 @@ Result<Quads> read_quads(const PolygonMesh& mesh)
             first = std::min(first, p);
         }
     if (others > 0)
-        return invalid(text(others) + " of " + text(static_cast<Index>(quads.size())) +
-                           " faces are no quads: the first, face " + text(first) + ", has " +
-                           text(static_cast<Index>(mesh.polygons.count(first))) +
-                           " corners. A layout needs quads only; subdivide it once by "
-                           "Catmull-Clark in the program it comes from",
-                       first);
+        return Error{ErrorCode::invalid_domain,
+                     text(others) + " of " + text(static_cast<Index>(quads.size())) +
+                         " faces are no quads: the first, face " + text(first) +
+                         " (counted from 0), has " +
+                         text(static_cast<Index>(mesh.polygons.count(first))) +
+                         " corners. One step of Catmull-Clark subdivision in the program they come "
+                         "from makes all faces quads",
+                     first};
     for (Index p = 0; p < quads.size(); ++p)
         for (Index k = 0; k < 4; ++k)
             quads[p][k] = mesh.polygons.corner(p, k);
