@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "bot2nurbs/read_mesh.h"
 #include "convert_fixtures.h"
 #include "mesh_fixtures.h"
 
@@ -237,6 +238,36 @@ TEST_F(QuadsTest, the_ellipsoid_of_a_field_aligned_layout_is_fitted_closely)
     EXPECT_EQ(report->components[0].brep_faces, 552u);
     EXPECT_LE(report->components[0].continuity.max_g1_angle_deg, 1e-8);
     EXPECT_LT(report->deviation().rms(), 1e-4 * report->diagonal);
+}
+
+TEST_F(QuadsTest, the_quads_that_the_triangles_of_a_model_come_in_run_along_its_edges)
+{
+    const std::string model = std::string(BOT2NURBS_SHARED) + "/data/meshes/smooth/spot.obj";
+    if (!std::filesystem::exists(model))
+        GTEST_SKIP() << "no model " << model;
+    Context context;
+    const Result<TriangleSoup> spot = read_mesh(model, context);
+    ASSERT_TRUE(spot);
+    std::string quads;
+    for (const Vec3& p : spot->positions)
+        quads += fmt::format("v {:.17g} {:.17g} {:.17g}\n", p.x, p.y, p.z);
+    // Triangles (a, b, c) and (d, c, b).
+    for (std::size_t t = 0; t < spot->triangles.size(); t += 2) {
+        const auto& [a, b, c] = spot->triangles[t];
+        quads += fmt::format("f {} {} {} {}\n", a + 1, b + 1, spot->triangles[t + 1][0] + 1, c + 1);
+    }
+    write_file(path("quads.obj"), quads);
+    ConvertOptions o;
+    o.input = model;
+    o.quads = path("quads.obj");
+    o.features = FeatureMode::off;
+    o.domain_out = path("domain.json");
+    const Result<ConvertReport> report = convert(o, context);
+    ASSERT_TRUE(report) << report.error().message;
+    const ComponentOutcome& c = report->components[0];
+    EXPECT_EQ(c.domain.faces, 2928u);
+    EXPECT_EQ(c.quads->largest_move, 0.0);
+    EXPECT_LT(c.quads->largest_detour, 1.0 + 1e-12);
 }
 
 } // namespace
