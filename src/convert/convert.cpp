@@ -3,6 +3,7 @@
 
 #include "bot2nurbs/domain_file.h"
 #include "convert/cage_input.h"
+#include "convert/check_layout.h"
 #include "convert/component.h"
 #include "convert/constraints_input.h"
 #include "convert/domain_input.h"
@@ -29,10 +30,6 @@ namespace fs = std::filesystem;
 // The cube has six faces; a closed domain of inner valences of at least three cannot have fewer
 // unless it winds round a handle.
 constexpr Index fewest_patches = 6;
-
-// An edge of a mesh of quads is suspect when it is so many times as long on the mesh as straight.
-// Half a turn is 1.6, and the edges of quads that folds of the mesh push aside are up to 2.4.
-constexpr double most_detour = 4.0;
 
 enum class Format { archive_3dm, step, occ_brep };
 
@@ -106,38 +103,6 @@ Error bad_option(std::string message)
     return {ErrorCode::bad_option, std::move(message), invalid_index};
 }
 
-//! The first option that contradicts the one that says where the layout comes from.
-std::optional<Error> check_layout(const ConvertOptions& o)
-{
-    const std::pair<bool, const char*> sources[] = {{o.cage, "--cage"},
-                                                    {o.quads.has_value(), "--layout quads"},
-                                                    {o.domain_in.has_value(), "--domain-in"}};
-    const std::pair<bool, const char*> automatic[] = {
-        {o.patches.has_value(), "--patches"},
-        {o.constraints.has_value(), "--constraints"},
-        {o.constraints_out.has_value(), "--constraints-out"}};
-    const std::pair<bool, const char*> of_mesh[] = {
-        {o.domain_out.has_value(), "--domain-out"},
-        {o.fill_holes.has_value(), "--fill-holes"},
-        {o.components == ComponentMode::largest, "--components largest"},
-        {o.strict, "--strict"}};
-    const char* source = nullptr;
-    for (const auto& [given, name] : sources) {
-        if (given && source)
-            return bad_option(fmt::format("{} contradicts {}: both are layouts", name, source));
-        if (given)
-            source = name;
-    }
-    for (const auto& [given, name] : automatic)
-        if (given && source)
-            return bad_option(
-                fmt::format("{} is about the automatic layout: it contradicts {}", name, source));
-    for (const auto& [given, name] : of_mesh)
-        if (given && o.cage)
-            return bad_option(fmt::format("{} is about a mesh, but --cage has none", name));
-    return std::nullopt;
-}
-
 void add_input_warnings(const PreparedInput& input, ConvertReport& report)
 {
     for (const RepairNote& note : input.mesh.notes) {
@@ -195,21 +160,6 @@ void add_outcome_warnings(const ConvertOptions& options, ConvertReport& report)
                      ? "They are too short or too rough to be creases"
                      : "--features DEGREES keeps creases of that angle"),
              vertex});
-}
-
-//! Edges of quads that take a long way over the mesh: it is another shape there.
-void add_detour_warnings(ConvertReport& report)
-{
-    for (const ComponentOutcome& c : report.components)
-        if (c.quads && c.quads->largest_detour > most_detour)
-            report.warnings.push_back(
-                {"layout_detour",
-                 fmt::format("edge {}-{} of the quad mesh (vertices counted from 0) is {:.1f} "
-                             "times as long on the mesh as its ends are apart: the quads do not "
-                             "follow the mesh there",
-                             c.quads->detour_edge[0], c.quads->detour_edge[1],
-                             c.quads->largest_detour),
-                 c.quads->detour_edge[0]});
 }
 
 Result<std::string> to_bytes(Format format, const std::vector<Brep>& breps,

@@ -16,6 +16,10 @@ namespace {
 // Vertices of a piece whose distances say which component it belongs to.
 constexpr std::size_t most_probes = 500;
 
+// An edge of a mesh of quads is suspect when it is so many times as long on the mesh as straight.
+// Half a turn is 1.6, and the edges of quads that folds of the mesh push aside are up to 2.4.
+constexpr double most_detour = 4.0;
+
 double mean_distance(const QuadMesh& piece, const ClosestPoint& closest)
 {
     const std::size_t step = 1 + piece.positions.size() / most_probes;
@@ -70,6 +74,20 @@ Result<std::vector<QuadMesh>> quads_of_components(const std::string& path, const
             used[p] = 1;
         }
     return result;
+}
+
+void add_detour_warnings(ConvertReport& report)
+{
+    for (const ComponentOutcome& c : report.components)
+        if (c.quads && c.quads->largest_detour > most_detour)
+            report.warnings.push_back(
+                {"layout_detour",
+                 fmt::format("edge {}-{} of the quad mesh (vertices counted from 0) is {:.1f} "
+                             "times as long on the mesh as its ends are apart: the quads do not "
+                             "follow the mesh there",
+                             c.quads->detour_edge[0], c.quads->detour_edge[1],
+                             c.quads->largest_detour),
+                 c.quads->detour_edge[0]});
 }
 
 } // namespace bot2nurbs

@@ -3,6 +3,7 @@
 
 #include "bot2nurbs/import_quads.h"
 #include "bot2nurbs/repair_mesh.h"
+#include "bot2nurbs/report.h"
 
 #include <string>
 #include <vector>
@@ -14,5 +15,8 @@ namespace bot2nurbs {
 //! or a piece is left over.
 Result<std::vector<QuadMesh>> quads_of_components(const std::string& path, const RepairedMesh& mesh,
                                                   Context& context);
+
+//! Warns of edges of quads that take a long way over the mesh: it is another shape there.
+void add_detour_warnings(ConvertReport& report);
 
 } // namespace bot2nurbs
