@@ -31,7 +31,8 @@ DEFAULT = (
 FOLDERS = ("smooth", "genus", "mechanical", "open", "multi")
 EXTENSIONS = {".stl", ".obj", ".ply", ".off"}
 
-INPUT_REJECTED = 5  # Exit code.
+# Codes of errors that an input can be at fault for.
+INPUT_FAULTS = {"empty_input", "bad_geometry", "not_manifold", "not_orientable", "self_intersecting"}
 MAX_GAP = 0.0  # Shared coefficients are the same numbers.
 MAX_ANGLE = 1e-8  # Degrees: rounding of exact joins.
 VOLUME_SHARE = 0.005  # Of the mesh's volume.
@@ -124,7 +125,9 @@ def convert(model, options, judge, work):
     if code != 0 or not checked:
         lines = (work / (model.stem + ".log")).read_text().splitlines()
         row["verdict"] = next((x for x in reversed(lines) if x.startswith("error")), "no message")
-        return row, ([] if code == INPUT_REJECTED else [f"exit code {code}"])
+        report = json.loads(report_path.read_text()) if report_path.is_file() else {}
+        row["refused"] = report.get("error", {}).get("code") in INPUT_FAULTS
+        return row, ([] if row["refused"] else [f"exit code {code}"])
 
     report = json.loads(report_path.read_text())
     domain, deviation, brep = report["domain"], report["deviation"], report["brep"]
@@ -204,7 +207,7 @@ FEATURE_COLUMNS = (
 
 def table(rows, title, columns, version, command):
     good = sum(not row["failed"] for row in rows)
-    refused = sum(row["exit"] == INPUT_REJECTED for row in rows)
+    refused = sum(row.get("refused", False) for row in rows)
     lines = [
         f"# {title}",
         "",
