@@ -150,6 +150,23 @@ Status measure_points(const ComponentPoints& points, const QuadComplex& complex,
     return std::nullopt;
 }
 
+//! The domain that a quad mesh makes; creases that it does not follow are no features any more.
+Result<QuadDomain> import_layout(const ManifoldMesh& unit, QuadMesh quads, const Frame& frame,
+                                 MeshFeatures& features, QuadsReport& report, Context& context)
+{
+    for (Vec3& p : quads.positions)
+        p = frame.to_unit(p);
+    Result<QuadImport> made = import_quads(unit, quads, features, context);
+    if (!made)
+        return made.error();
+    report.largest_move = frame.size * made->largest_move;
+    report.farthest_vertex = quads.source_vertex[made->farthest_vertex];
+    report.crease_edges = made->crease_edges;
+    features.kept_edges -= static_cast<Index>(made->smoothed.size());
+    features.smoothed.insert(features.smoothed.end(), made->smoothed.begin(), made->smoothed.end());
+    return std::move(made->domain);
+}
+
 void to_input_units(DistanceStatistics& s, const Frame& frame)
 {
     s.max *= frame.size;
@@ -221,17 +238,25 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
     outcome.diagonal = component.mesh.box().diagonal();
 
     stage("features");
-    // Edges of a mesh through points are the mesh's own: it rounds those of the body.
-    const bool seek_features = points == nullptr || options.features == FeatureMode::all;
+    // The surface of a cage is smooth; edges of a mesh through points are the mesh's own, which
+    // rounds those of the body.
+    const bool seek_features =
+        !options.cage && (points == nullptr || options.features == FeatureMode::all);
     Result<MeshFeatures> features =
-        seek_features ? find_features(*unit, options, context) : MeshFeatures{};
+        seek_features ? find_features(*unit, options, context) : MeshFeatures();
     if (!features)
         return features.error();
-    outcome.features = describe(*features, component);
 
     stage("layout");
     if (wishes.supplied) {
         result.domain = std::move(*wishes.supplied);
+    } else if (wishes.quads) {
+        Result<QuadDomain> domain =
+            import_layout(*unit, *wishes.quads, frame, *features, outcome.quads.emplace(), context);
+        if (!domain)
+            return domain.error();
+        result.domain = std::move(*domain);
+        result.domain.source_signature = signature(component.mesh);
     } else {
         LayoutOptions layout_options;
         layout_options.patches = options.patches;
@@ -250,6 +275,7 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
         for (const std::string& note : layout->summary.notes)
             context.log(LogLevel::info, "layout: " + note);
     }
+    outcome.features = describe(*features, component);
     if (Status failed = place_carrier(result.domain.carrier, *unit))
         return *failed;
     outcome.domain = describe(result.domain);
@@ -264,6 +290,13 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
             outcome.layout->exact_maps += chart.level == MapLevel::exact;
         }
     outcome.quality = measure_layout(result.domain, *charts);
+    if (outcome.quads) {
+        const Spread& detours = outcome.quality.straightness;
+        const DomainEdge& longest = result.domain.edges[detours.most_at];
+        outcome.quads->largest_detour = detours.most;
+        outcome.quads->detour_edge = {wishes.quads->source_vertex[longest.a],
+                                      wishes.quads->source_vertex[longest.b]};
+    }
     if (forms.empty())
         return result;
 

@@ -20,6 +20,10 @@ struct PreparedInput {
     std::optional<CloudInput> cloud; //!< What the mesh was made of, its own mesh taken out.
 };
 
+//! open_mesh where a component is open: names the boundary loops by their first vertices in the
+//! numbering of the input.
+std::optional<Error> refuse_open(const RepairedMesh& mesh);
+
 //! Stages "read", "check" and "repair"; for a cloud of points those of load_cloud() come first.
 //! Errors: those of read_mesh, load_cloud() and repair_mesh, and bad_geometry where a repair is
 //! needed and options.repair is off; open_mesh; self_intersecting.

@@ -3,7 +3,7 @@
 
 namespace bot2nurbs {
 
-Result<TriangleSoup> read_off(const MeshFile& file, Context& context)
+Result<PolygonMesh> read_off(const MeshFile& file, Context& context)
 {
     TextScanner text(file.bytes, '#');
     const Result<OffHeader> header = read_off_header(file, text);
@@ -51,7 +51,7 @@ Result<TriangleSoup> read_off(const MeshFile& file, Context& context)
         polygons.close();
         text.skip_line(); // colour
     }
-    return finish_soup(file, std::move(positions), polygons, context);
+    return PolygonMesh{std::move(positions), std::move(polygons)};
 }
 
 } // namespace bot2nurbs
