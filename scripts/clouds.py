@@ -170,14 +170,15 @@ def page(rows, synthetic):
         "mesh that a synthetic cloud was sampled from (true rms, true max; it includes parts that a partial",
         "cloud does not show, where the surface is a guess). `solid`: a valid solid (yes) or a valid open",
         "surface (open). Seconds of wall-clock time on a loaded machine of two cores.\n",
-        f"{len(good)} of {len(rows)} clouds give a valid B-Rep; the others end with the reason given below.\n",
+        f"{len(good)} of {len(rows)} clouds give a valid B-Rep.\n",
         "## Sampled from known meshes\n",
         table(common + ["true genus", "true rms", "true max"], [r for r in good if r["cloud"] in synthetic]),
         "## Others\n",
         table(common, [r for r in good if r["cloud"] not in synthetic]),
-        "## Without a result\n",
-        table(["cloud", "exit", "seconds", "reason"], [r for r in rows if r["exit"] != "0"]),
     ]
+    bad = [r for r in rows if r["exit"] != "0"]
+    if bad:
+        text += ["## Without a result\n", table(["cloud", "exit", "seconds", "reason"], bad)]
     return "\n".join(text)
 
 
