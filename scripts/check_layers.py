@@ -36,6 +36,7 @@ PUBLIC_HEADERS = {
     "validate_domain": "domain",
     "domain_samples": "domain",
     "domain_constraints": "domain",
+    "refine_domain": "domain",
     "layout": "layout",
     "spline_network": "spline",
     "fit_network": "fit",
