@@ -74,4 +74,26 @@ struct RefinedComplex {
 //! Halves of a crease are creases. Errors: bad_option naming a quad with one or three marks.
 Result<RefinedComplex> refine_complex(const QuadComplex& complex, const std::vector<char>& marks);
 
+//! A domain after one round of refinement.
+struct RefinedDomain {
+    QuadDomain domain;
+    PieceMap map;
+};
+
+//! Refines a domain on its source: its complex as refine_complex() does, with paths drawn straight
+//! in the charts of the quads they cut.
+//!
+//! 1. The result satisfies every rule of validate_domain() that the domain does; carrier vertices
+//!    keep their numbers, and so do domain vertices.
+//! 2. Paths of edges that are not cut run where they ran, those of edges that are cut go through
+//!    the new vertex, which is within a tenth of their length of their middle.
+//! 3. The carrier grows by a number of faces proportional to that of the new quads: where these
+//!    would have too few, its longest edges are halved.
+//! 4. The same for any thread count.
+//!
+//! \pre the domain is valid. Errors: bad_option naming a quad with one or three marks,
+//! layout_failed naming a quad that cannot be cut, cancelled.
+Result<RefinedDomain> refine_domain(const ManifoldMesh& source, const QuadDomain& domain,
+                                    const std::vector<char>& marks, Context& context);
+
 } // namespace bot2nurbs
