@@ -49,15 +49,31 @@ template <class T> CLI::Option* add_choice(CLI::App& app, const std::string& nam
         ->check(CLI::IsMember(names));
 }
 
+// False for what is neither a word nor an angle.
+bool parse_features(const std::string& text, ConvertOptions& options)
+{
+    if (text == "auto" || text == "off") {
+        options.features = text == "auto" ? FeatureMode::automatic : FeatureMode::off;
+        return true;
+    }
+    double angle = 0.0;
+    if (!CLI::detail::lexical_cast(text, angle))
+        return false;
+    options.features = FeatureMode::all;
+    options.feature_options.angle = angle;
+    return !options.feature_options.check();
+}
+
 } // namespace
 
 std::variant<Command, int> parse_command(int argc, char** argv)
 {
     Command command;
     ConvertOptions& o = command.options;
-    CLI::App app("Turns a closed triangle mesh into a watertight solid of bicubic B-spline patches "
-                 "with exact G1 joins.",
-                 "bot2nurbs");
+    CLI::App app(
+        "Turns a triangle mesh into a watertight B-Rep of bicubic B-spline patches with exact "
+        "G1 joins.",
+        "bot2nurbs");
     app.footer(footer);
     app.set_version_flag("--version", "bot2nurbs " BOT2NURBS_VERSION);
 
@@ -86,7 +102,18 @@ std::variant<Command, int> parse_command(int argc, char** argv)
         ->group(surface);
     app.add_flag("--robust", o.fit.robust, "Let outliers count less")->group(surface);
 
+    std::string features = "auto";
+    app.add_option("--features", features,
+                   "Which sharp edges stay sharp: auto, off, or all creases of at least DEGREES")
+        ->type_name("auto|off|DEGREES")
+        ->capture_default_str()
+        ->group(surface);
+
     const std::string input = "Input";
+    CLI::Option* open =
+        app.add_flag("--open", "Open meshes become open surfaces, without a warning")->group(input);
+    CLI::Option* solid =
+        app.add_flag("--solid", "Reject open meshes")->excludes(open)->group(input);
     CLI::Option* check =
         app.add_flag("--check", "Report the defects of INPUT and convert nothing")->group(input);
     app.add_flag("--strict", o.strict, "Reject input that crosses itself")->group(input);
@@ -153,6 +180,18 @@ std::variant<Command, int> parse_command(int argc, char** argv)
         return exit_code(ErrorCode::bad_option);
     }
     o.repair = !no_repair;
+    if (*open)
+        o.closure = Closure::open;
+    if (*solid)
+        o.closure = Closure::solid;
+    if (!parse_features(features, o)) {
+        std::fprintf(
+            stderr,
+            "bot2nurbs: --features %s is not auto, off, or an angle above 0 and at most 180 "
+            "degrees\n",
+            features.c_str());
+        return exit_code(ErrorCode::bad_option);
+    }
     if (*patches_option)
         o.patches = patches;
     if (*knots_option)

@@ -3,6 +3,7 @@
 
 #include "bot2nurbs/check_mesh.h"
 #include "bot2nurbs/context.h"
+#include "bot2nurbs/detect_features.h"
 #include "bot2nurbs/fit_network.h"
 #include "bot2nurbs/report.h"
 #include "bot2nurbs/spline_network.h"
@@ -15,6 +16,21 @@
 #include <vector>
 
 namespace bot2nurbs {
+
+//! Which sharp edges of the input stay sharp.
+enum class FeatureMode {
+    automatic, //!< Creases, where they are the edges of a part: see
+               //!< FeatureOptions::least_clear_share.
+    off,       //!< None: all are rounded.
+    all,       //!< All creases of the angle asked for.
+};
+
+//! Whether the result must be closed.
+enum class Closure {
+    as_input, //!< Solids of closed components, open surfaces of open ones.
+    open,     //!< The same, and that some are open needs no warning.
+    solid,    //!< Open components are refused.
+};
 
 //! What convert() reads, makes and writes. Paths are as the operating system takes them.
 struct ConvertOptions {
@@ -30,6 +46,11 @@ struct ConvertOptions {
     //! because CAD kernels take a triple knot for a break.
     std::optional<KnotForm> knots;
     FitOptions fit;
+
+    FeatureMode features = FeatureMode::automatic;
+    //! How creases are found. With FeatureMode::all its least_clear_share counts as 0.
+    FeatureOptions feature_options;
+    Closure closure = Closure::as_input;
 
     bool repair = true;  //!< Make harmless repairs; false: reject an input that needs any.
     bool strict = false; //!< Reject self-intersecting input instead of warning.

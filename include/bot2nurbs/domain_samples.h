@@ -45,6 +45,13 @@ Result<SurfaceSampleSet> make_samples(const ManifoldMesh& source,
                                       const std::vector<QuadChart>& charts,
                                       const SampleOptions& options, Context& context);
 
+//! Samples of the curves of a domain, its creases and boundary: marks those of `samples` that start
+//! on one, and adds `per_side` and the two ends along every sharp edge, each with the mean weight
+//! of a sample of its quad. Cost linear in charts and samples.
+void add_curve_samples(const ManifoldMesh& source, const QuadComplex& complex,
+                       const std::vector<QuadChart>& charts, const SampleOptions& options,
+                       SurfaceSampleSet& samples);
+
 //! Unit normals of the three corners of every face, at 3 f + k, as make_samples uses them.
 std::vector<Vec3> corner_normals(const ManifoldMesh& source, double smooth_angle, Context& context);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "bot2nurbs/domain_constraints.h"
 #include "bot2nurbs/quad_domain.h"
 
 #include <optional>
@@ -9,6 +10,9 @@ namespace bot2nurbs {
 
 struct LayoutOptions {
     std::optional<Index> patches; //!< Wanted number of quads; by default chosen from the shape.
+    //! Chains of source edges that become edges of the domain: seams and creases; of kind corner,
+    //! vertices where a crease or the boundary turns. The boundary itself need not be named.
+    std::vector<FeaturePath> features;
     bool split_triangles = false; //!< Use the three-quads fallback in place of pairing.
     std::uint64_t seed = 0; //!< Reserved for tie-breaking experiments; results are deterministic.
 };
@@ -29,8 +33,8 @@ struct LayoutResult {
     LayoutSummary summary;
 };
 
-//! The automatic layout of one closed connected mesh (Eck et al. 1995, Eck and Hoppe 1996).
-//! Errors: open_mesh, layout_failed, cancelled.
+//! The automatic layout of one connected mesh (Eck et al. 1995, Eck and Hoppe 1996). Its boundary
+//! becomes that of the domain. Errors: bad_option, layout_failed, cancelled.
 Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOptions& options,
                                   Context& context);
 

@@ -5,9 +5,11 @@
 #include "bot2nurbs/deviation.h"
 #include "bot2nurbs/fit_network.h"
 #include "bot2nurbs/layout.h"
+#include "bot2nurbs/layout_quality.h"
 #include "bot2nurbs/repair_mesh.h"
 #include "bot2nurbs/spline_network.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -33,6 +35,16 @@ struct DomainReport {
     std::vector<Index> valences; //!< Number of vertices with valence 0, 1, 2, ...
 };
 
+//! Sharp edges of one component: edges of the mesh, not of the domain.
+struct FeatureReport {
+    Index detected_edges = 0;       //!< Edges that turn by the angle of a feature or more.
+    Index kept_edges = 0;           //!< Edges of the creases that stay sharp.
+    Index creases = 0, corners = 0; //!< Chains of kept edges, and where they turn.
+    double clear_share = 1.0;       //!< MeshFeatures::clear_share.
+    //! Detected edges that were smoothed over, as vertices of the input.
+    std::vector<std::array<Index, 2>> smoothed;
+};
+
 //! What became of one connected component of the input.
 struct ComponentOutcome {
     Index first_face = invalid_index; //!< Its first triangle, in the numbering of the input.
@@ -41,8 +53,10 @@ struct ComponentOutcome {
     Index boundary_loops = 0;
     double diagonal = 0.0; //!< Of the component's box, in units of the input.
 
+    FeatureReport features;
     DomainReport domain;
     std::optional<LayoutSummary> layout; //!< Absent when the domain was supplied.
+    LayoutQuality quality;               //!< Of the domain.
     FitSummary fit;                      //!< Distances in units of the input.
     Deviation deviation;                 //!< In units of the input.
     Continuity continuity;               //!< Of the surface as written.
@@ -60,7 +74,6 @@ struct ConvertReport {
     Index input_vertices = 0, input_faces = 0; //!< Triangles, before repair.
     std::string units;                         //!< Written into files that carry a unit.
     double diagonal = 0.0;                     //!< Of the box of all components.
-    Index sharp_edges = 0; //!< Edges of the input with more than 40 degrees between the normals.
     std::vector<RepairNote> repairs;
     std::vector<ComponentOutcome> components;
     std::vector<OutputFile> outputs;

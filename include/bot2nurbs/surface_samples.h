@@ -21,6 +21,9 @@ struct SurfaceSampleSet {
     std::vector<double> weights;     //!< Confidence times the area the sample stands for; > 0.
     std::vector<SourcePoint> source; //!< Where on the source mesh.
     std::vector<DomainPoint> domain; //!< Where in the domain (changes with parameter correction).
+    //! Per sample, 1 when it lies on a crease or the boundary: it is then a sample of that curve,
+    //! and its place stays on sharp edges of the domain. Empty: none does.
+    std::vector<char> on_curve;
 
     std::size_t size() const { return positions.size(); }
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "convert/component.h"
 
+#include "bot2nurbs/detect_features.h"
 #include "bot2nurbs/domain_samples.h"
 #include "bot2nurbs/layout.h"
 
@@ -70,6 +71,43 @@ DomainReport describe(const QuadDomain& domain)
     return report;
 }
 
+Result<MeshFeatures> find_features(const ManifoldMesh& mesh, const ConvertOptions& options,
+                                   Context& context)
+{
+    FeatureOptions how = options.feature_options;
+    if (options.features == FeatureMode::all)
+        how.least_clear_share = 0.0;
+    Result<MeshFeatures> found = detect_features(mesh, how, context);
+    if (found && options.features == FeatureMode::off) {
+        found->creases.clear();
+        found->kept_edges = 0;
+    }
+    return found;
+}
+
+FeatureReport describe(const MeshFeatures& features, const MeshComponent& component)
+{
+    FeatureReport report;
+    report.detected_edges = features.sharp_edges;
+    report.kept_edges = features.kept_edges;
+    report.creases = static_cast<Index>(features.creases.size());
+    report.corners = static_cast<Index>(features.corners.size());
+    report.clear_share = features.clear_share;
+    for (const auto& [a, b] : features.smoothed)
+        report.smoothed.push_back({component.source_vertex[a], component.source_vertex[b]});
+    return report;
+}
+
+std::vector<FeaturePath> feature_paths(const MeshFeatures& features)
+{
+    std::vector<FeaturePath> paths;
+    for (const std::vector<Index>& crease : features.creases)
+        paths.push_back({FeatureKind::crease, crease});
+    if (!features.corners.empty())
+        paths.push_back({FeatureKind::corner, features.corners});
+    return paths;
+}
+
 void to_input_units(DistanceStatistics& s, const Frame& frame)
 {
     s.max *= frame.size;
@@ -119,12 +157,19 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
     outcome.boundary_loops = component.boundary_loops;
     outcome.diagonal = component.mesh.box().diagonal();
 
+    stage("features");
+    Result<MeshFeatures> features = find_features(*unit, options, context);
+    if (!features)
+        return features.error();
+    outcome.features = describe(*features, component);
+
     stage("layout");
     if (supplied) {
         result.domain = std::move(*supplied);
     } else {
         LayoutOptions layout_options;
         layout_options.patches = options.patches;
+        layout_options.features = feature_paths(*features);
         layout_options.seed = options.seed;
         Result<LayoutResult> layout = build_layout(*unit, layout_options, context);
         if (!layout)
@@ -138,8 +183,6 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
     if (Status failed = place_carrier(result.domain.carrier, *unit))
         return *failed;
     outcome.domain = describe(result.domain);
-    if (forms.empty())
-        return result;
 
     stage("charts");
     const Result<std::vector<QuadChart>> charts = compute_charts(*unit, result.domain, context);
@@ -150,10 +193,16 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
             outcome.layout->uniform_maps += chart.level == MapLevel::uniform;
             outcome.layout->exact_maps += chart.level == MapLevel::exact;
         }
+    outcome.quality = measure_layout(result.domain, *charts);
+    if (forms.empty())
+        return result;
+
     stage("samples");
     Result<SurfaceSampleSet> samples = make_samples(*unit, *charts, {}, context);
     if (!samples)
         return samples.error();
+
+    add_curve_samples(*unit, result.domain.complex, *charts, {}, *samples);
 
     stage("fit");
     const Result<SplineNetwork> network =
@@ -192,13 +241,13 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
     outcome.brep_faces = static_cast<Index>(first.faces.size());
     outcome.brep_edges = static_cast<Index>(first.edges.size());
     outcome.brep_vertices = static_cast<Index>(first.vertices.size());
-    if (!outcome.brep.solid)
-        return Error{ErrorCode::brep_failed,
-                     "the B-Rep is no solid" + (outcome.brep.defects.empty()
-                                                    ? std::string()
-                                                    : ": " + outcome.brep.defects[0].message),
-                     outcome.brep.defects.empty() ? invalid_index
-                                                  : outcome.brep.defects[0].element};
+    if (component.boundary_loops == 0 ? !outcome.brep.solid : !outcome.brep.valid)
+        return Error{
+            ErrorCode::brep_failed,
+            (component.boundary_loops == 0 ? "the B-Rep is no solid" : "the B-Rep is not valid") +
+                (outcome.brep.defects.empty() ? std::string()
+                                              : ": " + outcome.brep.defects[0].message),
+            outcome.brep.defects.empty() ? invalid_index : outcome.brep.defects[0].element};
     return result;
 }
 

@@ -106,12 +106,6 @@ void add_input_warnings(const PreparedInput& input, ConvertReport& report)
                          input.found.self_intersecting_pairs, f, g),
              f});
     }
-    if (input.found.sharp_edges > 0)
-        report.warnings.push_back(
-            {"sharp_edges",
-             fmt::format("{} edges turn by more than 40 degrees: they are rounded, not kept",
-                         input.found.sharp_edges),
-             invalid_index});
     for (std::size_t c = 0; c < input.mesh.components.size(); ++c)
         if (input.mesh.components[c].cavity)
             report.warnings.push_back(
@@ -120,6 +114,38 @@ void add_input_warnings(const PreparedInput& input, ConvertReport& report)
                              "as a solid of its own",
                              c + 1, input.mesh.components[c].surrounded_by + 1),
                  input.mesh.components[c].source_face.front()});
+}
+
+//! Warnings about what became of the shape: open surfaces, creases that were rounded.
+void add_outcome_warnings(const ConvertOptions& options, ConvertReport& report)
+{
+    Index loops = 0, open = 0, smoothed = 0, vertex = invalid_index;
+    for (const ComponentOutcome& c : report.components) {
+        loops += c.boundary_loops;
+        open += c.boundary_loops > 0;
+        smoothed += static_cast<Index>(c.features.smoothed.size());
+        if (vertex == invalid_index && !c.features.smoothed.empty())
+            vertex = c.features.smoothed[0][0];
+    }
+    if (open > 0 && options.closure == Closure::as_input)
+        report.warnings.push_back(
+            {"open",
+             fmt::format(
+                 "{} of {} components are open, with {} boundary loops in all: the result is "
+                 "no solid there. --open accepts this, --solid refuses it",
+                 open, report.components.size(), loops),
+             invalid_index});
+    if (smoothed > 0)
+        report.warnings.push_back(
+            {"sharp_edges",
+             fmt::format(
+                 "{} edges turn by {:g} degrees or more but are rounded, not kept (first: at "
+                 "vertex {}). {}",
+                 smoothed, options.feature_options.angle, vertex,
+                 options.features == FeatureMode::all
+                     ? "They are too short or too rough to be creases"
+                     : "--features DEGREES keeps creases of that angle"),
+             vertex});
 }
 
 struct PendingFile {
@@ -203,6 +229,8 @@ std::optional<Error> ConvertOptions::check() const
         return bad_option("--patches steers the automatic layout: it contradicts --domain-in");
     if (std::optional<Error> failed = fit.check())
         return failed;
+    if (std::optional<Error> failed = feature_options.check())
+        return failed;
     if (Status failed = write.check())
         return failed;
 
@@ -240,7 +268,6 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
                    : !input->units.empty()      ? input->units
                                                 : "mm";
     report.diagonal = mesh.box.diagonal();
-    report.sharp_edges = input->found.sharp_edges;
     add_input_warnings(*input, report);
 
     std::vector<QuadDomain> supplied;
@@ -286,6 +313,7 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
         return files.error();
     for (const ConvertedComponent& c : components)
         report.components.push_back(c.outcome);
+    add_outcome_warnings(options, report);
     if (context.cancelled())
         return Context::cancelled_error("write");
     for (const PendingFile& pending : *files) {

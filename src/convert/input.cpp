@@ -2,6 +2,7 @@
 #include "convert/input.h"
 
 #include "bot2nurbs/read_mesh.h"
+#include "mesh/boundary_loops.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -11,32 +12,42 @@ namespace bot2nurbs {
 
 namespace {
 
-//! The first boundary vertex in the numbering of the input, and the number of loops, of all
-//! components.
+//! Names the boundary loops of all components by their first vertex in the numbering of the input.
 std::optional<Error> refuse_open(const RepairedMesh& mesh)
 {
-    Index loops = 0, open_components = 0, first_vertex = invalid_index;
+    constexpr std::size_t most_named = 8;
+    Index open_components = 0;
+    std::vector<Index> loops; // First vertex of each.
     for (const MeshComponent& c : mesh.components) {
         if (c.boundary_loops == 0)
             continue;
-        loops += c.boundary_loops;
         ++open_components;
-        for (Index v = 0; v < c.mesh.vertex_count(); ++v)
-            if (c.mesh.is_boundary_vertex(v))
-                first_vertex = std::min(first_vertex, c.source_vertex[v]);
+        for (const std::vector<Index>& loop : boundary_loops(c.mesh)) {
+            Index first = invalid_index;
+            for (const Index v : loop)
+                first = std::min(first, c.source_vertex[v]);
+            loops.push_back(first);
+        }
     }
-    if (loops == 0)
+    if (loops.empty())
         return std::nullopt;
+    std::sort(loops.begin(), loops.end());
+    std::string named;
+    for (std::size_t i = 0; i < std::min(loops.size(), most_named); ++i)
+        named += (i > 0 ? ", " : "") + std::to_string(loops[i]);
+    if (loops.size() > most_named)
+        named += ", ...";
     const std::string where =
         mesh.components.size() == 1
             ? std::string("the mesh is")
             : fmt::format("{} of {} components are", open_components, mesh.components.size());
     return Error{
         ErrorCode::open_mesh,
-        fmt::format("{} open: {} boundary loop{} (a first one at vertex {}). Open output is "
-                    "not supported yet; close the mesh first. --check lists the loops",
-                    where, loops, loops == 1 ? "" : "s", first_vertex),
-        first_vertex};
+        fmt::format("{} open: {} boundary loop{}, at vert{} {}. A solid needs a closed mesh: "
+                    "leave out --solid for an open surface",
+                    where, loops.size(), loops.size() == 1 ? "" : "s",
+                    loops.size() == 1 ? "ex" : "ices", named),
+        loops.front()};
 }
 
 std::optional<Error> refuse_repairs(const RepairedMesh& mesh)
@@ -79,8 +90,9 @@ std::optional<Error> refuse(const ConvertOptions& options, const RepairedMesh& m
     if (!options.repair)
         if (std::optional<Error> refused = refuse_repairs(mesh))
             return refused;
-    if (std::optional<Error> refused = refuse_open(mesh))
-        return refused;
+    if (options.closure == Closure::solid)
+        if (std::optional<Error> refused = refuse_open(mesh))
+            return refused;
     if (std::optional<Error> refused = refuse_flat(mesh))
         return refused;
     return options.strict ? refuse_self_intersections(found) : std::nullopt;

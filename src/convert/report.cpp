@@ -177,6 +177,25 @@ Json brep_json(Index faces, Index edges, Index vertices, const BrepReport& b)
     return j;
 }
 
+Json spread_json(const Spread& s)
+{
+    return {{"least", s.least},
+            {"median", s.median},
+            {"most", s.most},
+            {"least_at", index_or_null(s.least_at)},
+            {"most_at", index_or_null(s.most_at)}};
+}
+
+Json quality_json(const LayoutQuality& q)
+{
+    return {{"stretch", spread_json(q.stretch)},
+            {"angle", spread_json(q.angle)},
+            {"area_ratio", spread_json(q.area_ratio)},
+            {"aspect", spread_json(q.aspect)},
+            {"size", spread_json(q.size)},
+            {"straightness", spread_json(q.straightness)}};
+}
+
 Json component_json(const ComponentOutcome& c, const std::string& unit)
 {
     Json j;
@@ -188,6 +207,7 @@ Json component_json(const ComponentOutcome& c, const std::string& unit)
     j["domain"] = domain_json(c.domain);
     if (c.layout)
         j["layout"] = layout_json(*c.layout);
+    j["layout_quality"] = quality_json(c.quality);
     if (c.brep_faces > 0) {
         j["fit"] = fit_json(c.fit);
         j["fit"]["history"] = rounds_json(c.fit);
@@ -282,6 +302,27 @@ Json all_breps(const ConvertReport& report)
     return brep_json(faces, edges, vertices, sum);
 }
 
+// Sharp edges of all components. Of those smoothed over the first ones are listed.
+Json features_json(const std::vector<ComponentOutcome>& components)
+{
+    constexpr std::size_t most_listed = 1000;
+    Index detected = 0, kept = 0, creases = 0, corners = 0;
+    std::size_t smoothed = 0;
+    Json listed = Json::array();
+    for (const ComponentOutcome& c : components) {
+        detected += c.features.detected_edges;
+        kept += c.features.kept_edges;
+        creases += c.features.creases;
+        corners += c.features.corners;
+        smoothed += c.features.smoothed.size();
+        for (const auto& edge : c.features.smoothed)
+            if (listed.size() < most_listed)
+                listed.push_back(edge);
+    }
+    return {{"detected_edges", detected}, {"kept_edges", kept}, {"smoothed_edges", smoothed},
+            {"creases", creases},         {"corners", corners}, {"smoothed", listed}};
+}
+
 Continuity all_joins(const std::vector<ComponentOutcome>& components)
 {
     Continuity worst;
@@ -342,9 +383,7 @@ std::string report_to_json(const ConvertOptions& options, const ConvertReport& r
         // No test of our own decides this yet; the report must not claim more.
         j["embedded"] = "undecided";
     }
-    j["features"] = {{"detected_edges", report.sharp_edges},
-                     {"kept_edges", 0},
-                     {"smoothed_edges", report.sharp_edges}};
+    j["features"] = features_json(report.components);
     j["components"] = Json::array();
     for (const ComponentOutcome& c : report.components)
         j["components"].push_back(component_json(c, report.units));

@@ -29,20 +29,25 @@ bool for_each_chunk(const Context& context, std::size_t count, std::size_t chunk
     if (context.threads == 1 || chunks <= 1) {
         for (std::size_t c = 0; c < chunks; ++c)
             run(c);
+        return !context.cancelled();
+    }
+    const auto run_all = [&] {
+        oneapi::tbb::parallel_for(
+            oneapi::tbb::blocked_range<std::size_t>(0, chunks, 1),
+            [&](const oneapi::tbb::blocked_range<std::size_t>& range) {
+                for (std::size_t c = range.begin(); c != range.end(); ++c)
+                    run(c);
+            },
+            oneapi::tbb::simple_partitioner());
+    };
+    // More threads than cores only make TBB print a warning; with all cores the default arena does,
+    // and one of our own would cost more than small loops take.
+    const int cores = oneapi::tbb::info::default_concurrency();
+    if (context.threads == 0 || context.threads >= static_cast<unsigned>(cores)) {
+        run_all();
     } else {
-        // More threads than cores only make TBB print a warning.
-        const int cores = oneapi::tbb::info::default_concurrency();
-        oneapi::tbb::task_arena arena(
-            context.threads == 0 ? cores : std::min(static_cast<int>(context.threads), cores));
-        arena.execute([&] {
-            oneapi::tbb::parallel_for(
-                oneapi::tbb::blocked_range<std::size_t>(0, chunks, 1),
-                [&](const oneapi::tbb::blocked_range<std::size_t>& range) {
-                    for (std::size_t c = range.begin(); c != range.end(); ++c)
-                        run(c);
-                },
-                oneapi::tbb::simple_partitioner());
-        });
+        oneapi::tbb::task_arena arena(static_cast<int>(context.threads));
+        arena.execute(run_all);
     }
     return !context.cancelled();
 }

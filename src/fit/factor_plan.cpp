@@ -18,6 +18,9 @@ struct Relaxation {
 };
 constexpr Relaxation relaxations[] = {{4, 0.8}, {16, 0.3}, {48, 0.1}};
 constexpr double wide_zeros = 0.03;
+//! Largest share of the work that is not divided among threads: with a few times as many subtrees
+//! as cores, all are busy to the end.
+constexpr double subtree_share = 1.0 / 16.0;
 
 double allowed_zeros(int width)
 {
@@ -82,6 +85,8 @@ FactorPlan::FactorPlan(const std::vector<std::vector<int>>& neighbours, const Co
         return;
     merge_columns(parent, count);
     fill_rows();
+    fill_places();
+    cut_subtrees();
 }
 
 std::vector<int> FactorPlan::order_by_degree(const std::vector<std::vector<int>>& neighbours) const
@@ -201,9 +206,6 @@ void FactorPlan::fill_rows()
     for (std::size_t s = 0; s < supernodes.size(); ++s)
         std::fill(node_of.begin() + supernodes[s].first, node_of.begin() + supernodes[s].last,
                   static_cast<int>(s));
-    std::vector<std::vector<int>> children(supernodes.size());
-    std::size_t stack = 0;
-    const auto square = [](int n) { return static_cast<std::size_t>(n) * n; };
     for (std::size_t s = 0; s < supernodes.size(); ++s) {
         Supernode& node = supernodes[s];
         node.rows = rows_below.size();
@@ -215,21 +217,64 @@ void FactorPlan::fill_rows()
         };
         for (int e = lower_column[node.first]; e < lower_column[node.last]; ++e)
             add(lower_row[e]);
-        for (const int c : children[s])
+        for (const int c : node.children)
             for (int k = 0; k < supernodes[c].row_count; ++k)
                 add(rows_below[supernodes[c].rows + k]);
         std::sort(rows_below.begin() + static_cast<std::ptrdiff_t>(node.rows), rows_below.end());
         node.row_count = static_cast<int>(rows_below.size() - node.rows);
         node.values = value_count;
         value_count += static_cast<std::size_t>(node.height()) * node.width();
-        largest_front = std::max(largest_front, node.height());
-        for (const int c : children[s])
-            stack -= square(supernodes[c].row_count);
-        stack += square(node.row_count);
-        largest_stack = std::max(largest_stack, stack);
         if (node.row_count > 0) {
             node.parent = node_of[rows_below[node.rows]];
-            children[node.parent].push_back(static_cast<int>(s));
+            supernodes[node.parent].children.push_back(static_cast<int>(s));
+        }
+    }
+}
+
+void FactorPlan::fill_places()
+{
+    std::vector<int> place_of(size());
+    lower_place.resize(lower_row.size());
+    place_in_parent.resize(rows_below.size());
+    for (const Supernode& node : supernodes) {
+        for (int j = node.first; j < node.last; ++j)
+            place_of[j] = j - node.first;
+        for (int k = 0; k < node.row_count; ++k)
+            place_of[rows_below[node.rows + k]] = node.width() + k;
+        for (int e = lower_column[node.first]; e < lower_column[node.last]; ++e)
+            lower_place[e] = place_of[lower_row[e]];
+        for (const int c : node.children)
+            for (int k = 0; k < supernodes[c].row_count; ++k) {
+                const std::size_t at = supernodes[c].rows + k;
+                place_in_parent[at] = place_of[rows_below[at]];
+            }
+    }
+}
+
+void FactorPlan::cut_subtrees()
+{
+    const std::size_t n = supernodes.size();
+    // Multiplications of a subtree, and its first node: it is a run of the postorder.
+    std::vector<double> subtree_work(n);
+    std::vector<int> first(n);
+    double all = 0.0;
+    for (std::size_t s = 0; s < n; ++s) {
+        const double w = supernodes[s].width(), r = supernodes[s].row_count;
+        const double own = w * (r * r + w * r + w * w / 3.0);
+        all += own;
+        subtree_work[s] = own;
+        first[s] = static_cast<int>(s);
+        for (const int c : supernodes[s].children) {
+            subtree_work[s] += subtree_work[c];
+            first[s] = std::min(first[s], first[c]);
+        }
+    }
+    const double most = subtree_share * all;
+    for (std::size_t s = 0; s < n; ++s) {
+        if (subtree_work[s] > most) {
+            top.push_back(static_cast<int>(s));
+        } else if (const int p = supernodes[s].parent; p < 0 || subtree_work[p] > most) {
+            subtrees.push_back({first[s], static_cast<int>(s) + 1});
         }
     }
 }

@@ -55,6 +55,8 @@ constexpr double least_share = 1e-3;
 //! Above this many multiplications (about a minute) a coupled factorisation is not attempted and
 //! point-distance rows are used instead.
 constexpr double coupled_work_limit = 6e10;
+constexpr std::size_t chunk_quads = 16;
+constexpr std::size_t chunk_samples = 512;
 
 double now()
 {
@@ -63,18 +65,21 @@ double now()
 }
 
 //! Thin-plate energy of every quad over [0, 4]^2.
-std::vector<double> quad_energies(const SplineSurface& surface)
+std::vector<double> quad_energies(const SplineSurface& surface, const Context& context)
 {
     const Matrix16& e = thin_plate_matrix();
     std::vector<double> energy(surface.patch_count(), 0.0);
-    Eigen::Matrix<double, 16, 3> x;
-    for (Index p = 0; p < surface.patch_count() * ReducedNetwork::pieces_per_quad; ++p) {
-        for (Index i = 0; i < 16; ++i) {
-            const Vec3& c = surface.bezier()[bezier_index(p, i)];
-            x.row(i) << c.x, c.y, c.z;
+    for_each_chunk(context, energy.size(), chunk_quads, [&](std::size_t begin, std::size_t end) {
+        Eigen::Matrix<double, 16, 3> x;
+        constexpr Index pieces = ReducedNetwork::pieces_per_quad;
+        for (Index p = static_cast<Index>(begin) * pieces; p < end * pieces; ++p) {
+            for (Index i = 0; i < 16; ++i) {
+                const Vec3& c = surface.bezier()[bezier_index(p, i)];
+                x.row(i) << c.x, c.y, c.z;
+            }
+            energy[p / pieces] += (x.cwiseProduct(e * x)).sum();
         }
-        energy[p / ReducedNetwork::pieces_per_quad] += (x.cwiseProduct(e * x)).sum();
-    }
+    });
     return energy;
 }
 
@@ -111,16 +116,18 @@ void FitLoop::weigh_by_surface(const State& state)
     constexpr int side = 2 * pieces_per_side;
     constexpr double places = side * side;
     const Index quads = network_.complex.quad_count();
-    std::vector<double> speed;
+    std::vector<double> speed(quads * static_cast<std::size_t>(side * side));
+    for_each_chunk(context_, quads, chunk_quads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin * side * side; k < end * side * side; ++k) {
+            const auto i = static_cast<int>(k / side % side), j = static_cast<int>(k % side);
+            const SurfacePoint s = state.surface.evaluate(
+                {static_cast<Index>(k / (side * side)), (i + 0.5) / side, (j + 0.5) / side});
+            speed[k] = norm(cross(s.du, s.dv));
+        }
+    });
     double area = 0.0;
-    for (Index q = 0; q < quads; ++q)
-        for (int i = 0; i < side; ++i)
-            for (int j = 0; j < side; ++j) {
-                const SurfacePoint s =
-                    state.surface.evaluate({q, (i + 0.5) / side, (j + 0.5) / side});
-                speed.push_back(norm(cross(s.du, s.dv)));
-                area += speed.back() / places;
-            }
+    for (const double s : speed)
+        area += s / places;
     const double mean = area / quads;
     for (std::size_t i = 0; i < weights.size(); ++i)
         row_weights_[i] = weights[i] * std::sqrt(mean / speed_at(state.feet[i].surface, mean));
@@ -150,8 +157,8 @@ std::vector<FitRow> FitLoop::rows_at(const State& state, const std::vector<doubl
 {
     const SurfaceWalk walk(network_.complex, state.surface);
     std::vector<FitRow> rows(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        FitRow& row = rows[i];
+    const auto row_at = [&](std::size_t i) {
+        FitRow row;
         const DomainPoint& d = where[i];
         const PieceParameter u = piece_parameter(d.u), v = piece_parameter(d.v);
         row.piece = 16 * d.quad + 4 * u.piece + v.piece;
@@ -160,15 +167,23 @@ std::vector<FitRow> FitLoop::rows_at(const State& state, const std::vector<doubl
         row.weight = row_weights_[i] * factors[i];
         if (state.feet.empty()) {
             row.residual = points[i];
-            continue;
+            return row;
         }
         const SurfacePoint& s = state.feet[i].surface;
         row.residual = points[i] - s.position;
-        // The distance to a rim grows in every direction across it.
         row.least_mu = response_.least_mu(d.quad);
-        if (!walk.on_sharp_edge(d))
+        // The distance to a rim grows in every direction across it.
+        row.of_curve = !on_curve.empty() && on_curve[i];
+        if (row.of_curve)
+            row.normal = walk.curve_tangent(state.feet[i]);
+        else if (!on_sharp_edge(network_.complex, d))
             row.normal = normalized(cross(s.du, s.dv));
-    }
+        return row;
+    };
+    for_each_chunk(context_, points.size(), chunk_samples, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            rows[i] = row_at(i);
+    });
     return rows;
 }
 
@@ -227,13 +242,16 @@ FitLoop::State FitLoop::moved_without_folds(const State& state, std::vector<Vec3
 
 void FitLoop::find_feet(State& state) const
 {
-    state.quad_energy = quad_energies(state.surface);
-    state.feet = correct_parameters(network_.complex, state.surface, points, where, context_);
+    state.quad_energy = quad_energies(state.surface, context_);
+    state.feet =
+        correct_parameters(network_.complex, state.surface, points, where, on_curve, context_);
 }
 
 NormalSystem::Solution FitLoop::solve(const State& state, const std::vector<FitRow>& rows,
                                       double mu)
 {
+    if (context_.cancelled())
+        return {}; // some rows may not have been made
     const RowsByPiece groups = group_by_piece(rows, reduced_.piece_count());
     RoundProblem problem;
     problem.rows = &rows;

@@ -20,7 +20,8 @@ public:
     // In.
     std::vector<Vec3> points;
     std::vector<double> weights;
-    std::vector<Vec3> normals; //!< Unit normals of the source; may be empty.
+    std::vector<Vec3> normals;  //!< Unit normals of the source; may be empty.
+    std::vector<char> on_curve; //!< As in SurfaceSampleSet.
     // In and out.
     std::vector<DomainPoint> where;
     // Out.

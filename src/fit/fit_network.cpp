@@ -19,7 +19,8 @@ Status check_samples(const SplineNetwork& network, const SurfaceSampleSet& sampl
     if (n == 0 || network.unknown_count == 0)
         return Error{ErrorCode::empty_input, "there is nothing to fit", invalid_index};
     if (samples.weights.size() != n || samples.domain.size() != n ||
-        (!samples.normals.empty() && samples.normals.size() != n))
+        (!samples.normals.empty() && samples.normals.size() != n) ||
+        (!samples.on_curve.empty() && samples.on_curve.size() != n))
         return Error{ErrorCode::bad_geometry,
                      "samples without a weight, a normal or parameters each", invalid_index};
     for (std::size_t i = 0; i < n; ++i) {
@@ -30,6 +31,11 @@ Status check_samples(const SplineNetwork& network, const SurfaceSampleSet& sampl
             return Error{ErrorCode::bad_geometry,
                          "sample " + std::to_string(i) +
                              " has a position, weight or parameter out of range",
+                         static_cast<Index>(i)};
+        if (!samples.on_curve.empty() && samples.on_curve[i] && !on_sharp_edge(network.complex, d))
+            return Error{ErrorCode::bad_geometry,
+                         "sample " + std::to_string(i) +
+                             " is one of a curve but its place is on no sharp edge",
                          static_cast<Index>(i)};
     }
     return std::nullopt;
@@ -86,6 +92,7 @@ Result<FitResult> fit_network(const SplineNetwork& network, SurfaceSampleSet& sa
     }
     loop.where = samples.domain;
     loop.normals = samples.normals;
+    loop.on_curve = samples.on_curve;
     if (const auto error = loop.run())
         return *error;
 

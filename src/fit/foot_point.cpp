@@ -17,6 +17,9 @@ constexpr int max_halvings = 12;
 //! Steps end the search below this share of the surface's diagonal: Newton's method converges
 //! quadratically, so the foot is then as exact as rounding lets it be.
 constexpr double step_share = 1e-11;
+//! A whole step of Newton's method shorter than this share of the diagonal is the last one: what is
+//! left after it is of the order of its square.
+constexpr double last_newton_share = 1e-6;
 //! A move onto an edge that is shorter than this in parameters is made without asking for descent,
 //! which rounding would hide.
 constexpr double snap = 1e-9;
@@ -56,12 +59,14 @@ Direction gauss_newton(const SurfacePoint& s, double gu, double gv)
 }
 
 //! Newton's step where the Hessian is positive definite, else Gauss and Newton's.
-Direction newton(const SurfacePoint& s, const Vec3& r, double gu, double gv)
+//! `quadratic` says which.
+Direction newton(const SurfacePoint& s, const Vec3& r, double gu, double gv, bool& quadratic)
 {
     Direction d;
     const double a = dot(s.du, s.du) + dot(r, s.duu), b = dot(s.du, s.dv) + dot(r, s.duv),
                  c = dot(s.dv, s.dv) + dot(r, s.dvv);
-    return solve_step(a, b, c, gu, gv, d) ? d : gauss_newton(s, gu, gv);
+    quadratic = solve_step(a, b, c, gu, gv, d);
+    return quadratic ? d : gauss_newton(s, gu, gv);
 }
 
 //! Place at parameter t along side s, from corner s to corner s + 1.
@@ -82,6 +87,7 @@ DomainPoint on_side(Index h, double t)
 struct SurfaceWalk::Move {
     Direction step;
     bool any = false;
+    bool quadratic = false; //!< A step of Newton's method.
 };
 
 SurfaceWalk::SurfaceWalk(const QuadComplex& complex, const SplineSurface& surface)
@@ -90,7 +96,7 @@ SurfaceWalk::SurfaceWalk(const QuadComplex& complex, const SplineSurface& surfac
     Box3 box;
     for (const Vec3& b : surface.bezier())
         box.add(b);
-    step_tolerance_ = step_share * box.diagonal();
+    diagonal_ = box.diagonal();
 }
 
 void SurfaceWalk::names(const DomainPoint& w, std::vector<DomainPoint>& out) const
@@ -124,11 +130,11 @@ void SurfaceWalk::names(const DomainPoint& w, std::vector<DomainPoint>& out) con
     out.push_back(on_side(twin, 1.0 - along[side]));
 }
 
-bool SurfaceWalk::on_sharp_edge(const DomainPoint& w) const
+bool on_sharp_edge(const QuadComplex& complex, const DomainPoint& w)
 {
     const bool on[4] = {w.v <= 0.0, w.u >= 1.0, w.v >= 1.0, w.u <= 0.0};
     for (Index s = 0; s < 4; ++s)
-        if (on[s] && complex_.is_sharp(complex_.edge(4 * w.quad + s)))
+        if (on[s] && complex.is_sharp(complex.edge(4 * w.quad + s)))
             return true;
     return false;
 }
@@ -138,9 +144,10 @@ SurfaceWalk::Move SurfaceWalk::choose_move(const Vec3& p, FootPoint& at,
 {
     const Vec3 r = at.surface.position - p;
     const double gu = dot(r, at.surface.du), gv = dot(r, at.surface.dv);
-    const Direction first = newton(at.surface, r, gu, gv);
+    bool quadratic = false;
+    const Direction first = newton(at.surface, r, gu, gv, quadratic);
     if (points_inside(at.where, first))
-        return {first, true};
+        return {first, true, quadratic};
     names(at.where, scratch);
     // Gauss and Newton's step is the tangent plane's nearest point, whatever the parametrisation:
     // where the surface is G1 it leads into exactly one of the patches around the place.
@@ -156,7 +163,7 @@ SurfaceWalk::Move SurfaceWalk::choose_move(const Vec3& p, FootPoint& at,
         const double nu = dot(rn, s.du), nv = dot(rn, s.dv);
         Direction d = gauss_newton(s, nu, nv);
         if (points_inside(name, d)) {
-            const Direction better = newton(s, rn, nu, nv);
+            const Direction better = newton(s, rn, nu, nv, quadratic);
             at.where = name;
             at.surface = s;
             return {points_inside(name, better) ? better : d, true};
@@ -193,7 +200,8 @@ FootPoint SurfaceWalk::descend(const Vec3& p, const DomainPoint& start) const
         if (!move.any)
             break;
         const Direction d = move.step;
-        if (norm(d.u * at.surface.du + d.v * at.surface.dv) <= step_tolerance_)
+        const double length = norm(d.u * at.surface.du + d.v * at.surface.dv);
+        if (length <= step_share * diagonal_)
             break;
         // The share of the step at which the place leaves the patch, and through which ends.
         const double to_u = d.u > 0.0   ? (1.0 - at.where.u) / d.u
@@ -205,6 +213,7 @@ FootPoint SurfaceWalk::descend(const Vec3& p, const DomainPoint& start) const
         const double exit = std::min(to_u, to_v);
         bool moved = false;
         double share = std::min(1.0, exit);
+        const bool last = move.quadratic && share == 1.0 && length <= last_newton_share * diagonal_;
         for (int k = 0; k < max_halvings && !moved; ++k, share *= 0.5) {
             FootPoint next = at;
             next.where.u = std::clamp(at.where.u + share * d.u, 0.0, 1.0);
@@ -229,6 +238,8 @@ FootPoint SurfaceWalk::descend(const Vec3& p, const DomainPoint& start) const
             best = at;
             best_square = square;
         }
+        if (last)
+            break;
     }
     best.distance = std::sqrt(best_square);
     return best;

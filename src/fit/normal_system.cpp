@@ -3,10 +3,9 @@
 
 #include "core/parallel.h"
 #include "fit/bernstein_gram.h"
-#include "spline/bernstein.h"
+#include "fit/piece_form.h"
 
 #include <algorithm>
-#include <array>
 
 namespace bot2nurbs {
 
@@ -15,96 +14,12 @@ namespace {
 //! Pieces assembled in parallel before their blocks are added to the matrix in piece order.
 constexpr Index batch_pieces = 512;
 constexpr Index chunk_pieces = 16;
-//! Conjugate gradients with the factor of an earlier round: at most this many iterations, which
-//! cost less than half a factorisation (a factor that is any good does with them), down to this
-//! share of the preconditioned residual: far below what moving feet change about a round.
-constexpr int reuse_iterations = 10;
-constexpr double reuse_tolerance = 1e-3;
-//! Coefficient pairs (i <= j) of a piece.
-constexpr int pairs16 = 136;
-
-std::size_t pair_count(Index k)
-{
-    return static_cast<std::size_t>(k) * (k + 1) / 2;
-}
-
-//! Quadratic form of one piece in its 16 coefficients: `blocks` symmetric matrices (1: the same
-//! for x, y, z; 6: xx, xy, xz, yy, yz, zz), as full 16 x 16 arrays, and the right-hand side.
-struct PieceForm {
-    std::array<Matrix16, 6> block;
-    Eigen::Matrix<double, 16, 3> right;
-};
-
-void accumulate_rows(const RoundProblem& problem, Index piece, int blocks, PieceForm& form)
-{
-    double upper[6][pairs16] = {};
-    double right[16][3] = {};
-    for (std::size_t o = problem.groups->offset[piece]; o < problem.groups->offset[piece + 1];
-         ++o) {
-        const FitRow& row = (*problem.rows)[problem.groups->order[o]];
-        const Cubic bs = bernstein(row.s), bt = bernstein(row.t);
-        double phi[16];
-        for (int i = 0; i < 16; ++i)
-            phi[i] = bs[i / 4] * bt[i % 4];
-        const Vec3 &n = row.normal, &r = row.residual;
-        const double mu = std::max(problem.mu, row.least_mu);
-        // A row without a normal counts in full in every direction.
-        const double along = n == Vec3{} ? 0.0 : (1.0 - mu) * row.weight;
-        const double all = n == Vec3{} ? row.weight : mu * row.weight;
-        const Vec3 wanted = along * dot(n, r) * n + all * r;
-        for (int i = 0; i < 16; ++i)
-            for (int c = 0; c < 3; ++c)
-                right[i][c] += phi[i] * wanted[c];
-        if (blocks == 1) {
-            int e = 0;
-            for (int i = 0; i < 16; ++i) {
-                const double w = row.weight * phi[i];
-                for (int j = i; j < 16; ++j, ++e)
-                    upper[0][e] += w * phi[j];
-            }
-            continue;
-        }
-        const double w[6] = {along * n.x * n.x + all, along * n.x * n.y, along * n.x * n.z,
-                             along * n.y * n.y + all, along * n.y * n.z, along * n.z * n.z + all};
-        double product[pairs16];
-        int e = 0;
-        for (int i = 0; i < 16; ++i)
-            for (int j = i; j < 16; ++j, ++e)
-                product[e] = phi[i] * phi[j];
-        for (int k = 0; k < 6; ++k)
-            for (int m = 0; m < pairs16; ++m)
-                upper[k][m] += w[k] * product[m];
-    }
-    for (int k = 0; k < blocks; ++k) {
-        int e = 0;
-        for (int i = 0; i < 16; ++i)
-            for (int j = i; j < 16; ++j, ++e)
-                form.block[k](i, j) = form.block[k](j, i) = upper[k][e];
-    }
-    for (int i = 0; i < 16; ++i)
-        for (int c = 0; c < 3; ++c)
-            form.right(i, c) = right[i][c];
-}
-
-void add_fairness(const RoundProblem& problem, Index piece, int blocks, PieceForm& form)
-{
-    const Index q = piece / ReducedNetwork::pieces_per_quad;
-    const double f = (*problem.fairness)[q];
-    const Matrix16& energy = thin_plate_matrix();
-    form.block[0] += f * energy;
-    if (blocks == 6) {
-        form.block[3] += f * energy;
-        form.block[5] += f * energy;
-    }
-    if (problem.bezier->empty())
-        return;
-    Eigen::Matrix<double, 16, 3> x;
-    for (Index i = 0; i < 16; ++i) {
-        const Vec3& p = (*problem.bezier)[bezier_index(piece, i)];
-        x.row(i) << p.x, p.y, p.z;
-    }
-    form.right.noalias() -= f * (energy * x);
-}
+//! Conjugate gradients with the factor of an earlier round: at most as many iterations as cost half
+//! a factorisation, down to a residual far below what moving feet change about a round.
+constexpr GradientLimits with_old_factor{20, 1e-3};
+//! With the factor, in single precision, of the matrix itself: a few iterations make up for its
+//! rounding. If that takes more, the matrix needs a factor in double precision.
+constexpr GradientLimits with_own_factor{12, 1e-8};
 
 } // namespace
 
@@ -149,9 +64,14 @@ NormalSystem::NormalSystem(const ReducedNetwork& network, const Context& context
     pair_offset_.assign(1, 0);
     for (Index p = 0; p < network.piece_count(); ++p) {
         const Index k = network.piece_size(p), *u = network.piece_unknowns(p);
+        const Eigen::Map<const Eigen::Matrix<double, 16, Eigen::Dynamic, Eigen::RowMajor>> weights(
+            network.piece_weights(p), 16, k);
+        const Eigen::MatrixXd energy = weights.transpose() * thin_plate_matrix() * weights;
         for (Index i = 0; i < k; ++i)
-            for (Index j = i; j < k; ++j)
+            for (Index j = i; j < k; ++j) {
                 slot_.push_back(plan_.slot(static_cast<int>(u[i]), static_cast<int>(u[j])));
+                energy_.push_back(energy(i, j));
+            }
         pair_offset_.push_back(slot_.size());
     }
 }
@@ -171,43 +91,29 @@ bool NormalSystem::assemble(const RoundProblem& problem, bool coupled, const Con
         local_offset.assign(1, 0);
         for (Index p = begin; p < end; ++p) {
             const Index k = network_.piece_size(p);
-            local_offset.push_back(local_offset.back() + blocks * pair_count(k) + 3 * k);
+            local_offset.push_back(local_offset.back() + PieceForm::doubles(k, blocks));
         }
         local.resize(local_offset.back());
         const bool finished = for_each_chunk(
             context, end - begin, chunk_pieces, [&](std::size_t first, std::size_t last) {
-                PieceForm form;
-                Eigen::Matrix<double, 16, Eigen::Dynamic> half;
-                Eigen::MatrixXd block;
+                std::vector<double> scratch;
                 for (std::size_t o = first; o < last; ++o) {
                     const Index p = begin + static_cast<Index>(o);
-                    accumulate_rows(problem, p, blocks, form);
-                    add_fairness(problem, p, blocks, form);
-                    const Index k = network_.piece_size(p);
-                    const Eigen::Map<
-                        const Eigen::Matrix<double, 16, Eigen::Dynamic, Eigen::RowMajor>>
-                        weights(network_.piece_weights(p), 16, k);
-                    double* out = local.data() + local_offset[o];
-                    for (int m = 0; m < blocks; ++m) {
-                        half.noalias() = form.block[m] * weights;
-                        block.noalias() = weights.transpose() * half;
-                        std::size_t e = 0;
-                        for (Index i = 0; i < k; ++i)
-                            for (Index j = i; j < k; ++j, ++e)
-                                out[blocks * e + m] = block(i, j);
-                    }
-                    Eigen::Map<Eigen::Matrix<double, 3, Eigen::Dynamic>> right(
-                        out + blocks * pair_count(k), 3, k);
-                    right.noalias() = form.right.transpose() * weights;
+                    PieceForm form(network_, p, blocks, local.data() + local_offset[o]);
+                    form.add_rows(problem, scratch);
+                    form.add_fairness(problem, energy_.data() + pair_offset_[p]);
                 }
             });
         if (!finished)
             return false;
         for (Index p = begin; p < end; ++p) {
             const double* in = local.data() + local_offset[p - begin];
-            for (std::size_t e = pair_offset_[p]; e < pair_offset_[p + 1]; ++e)
+            const std::size_t pairs = pair_offset_[p + 1] - pair_offset_[p];
+            for (std::size_t e = 0; e < pairs; ++e)
                 for (int m = 0; m < blocks; ++m)
-                    values[static_cast<std::size_t>(slot_[e]) * blocks + m] += *in++;
+                    values[static_cast<std::size_t>(slot_[pair_offset_[p] + e]) * blocks + m] +=
+                        in[m * pairs + e];
+            in += blocks * pairs;
             for (Index i = 0; i < network_.piece_size(p); ++i)
                 for (int c = 0; c < 3; ++c)
                     right_[3 * plan_.place[network_.piece_unknowns(p)[i]] + c] += *in++;
@@ -229,16 +135,17 @@ NormalSystem::Solution NormalSystem::solve(const RoundProblem& problem, double c
 NormalSystem::Solution NormalSystem::solve_decoupled(double condition_limit, const Context& context)
 {
     Solution solution;
-    if (!scalar_.factorize(context) || context.cancelled())
+    if (!scalar_.factorize(ScaledFactor::Precision::full, context) || context.cancelled())
         return solution;
     solution.condition = scalar_.condition(context);
     if (!(solution.condition <= condition_limit)) {
         scalar_.drop_factor();
         return solution;
     }
-    const Eigen::VectorXd x =
-        solve_by_scalar(Eigen::Map<const Eigen::VectorXd>(right_.data(), 3 * scalar_.size()));
-    set_move(x, solution);
+    const Eigen::VectorXd x = solve_by_scalar(
+        Eigen::Map<const Eigen::VectorXd>(right_.data(), 3 * scalar_.size()), context);
+    if (!context.cancelled())
+        set_move(x, solution);
     return solution;
 }
 
@@ -252,47 +159,45 @@ void NormalSystem::set_move(const Eigen::VectorXd& x, Solution& solution) const
     solution.ok = true;
 }
 
-Eigen::VectorXd NormalSystem::solve_by_scalar(const Eigen::VectorXd& right) const
+Eigen::VectorXd NormalSystem::solve_by_scalar(const Eigen::VectorXd& right,
+                                              const Context& context) const
 {
     using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
     const Eigen::Index n = scalar_.size();
     Eigen::VectorXd x(3 * n);
     Eigen::Map<Columns>(x.data(), n, 3) =
-        scalar_.solve_three(Eigen::Map<const Columns>(right.data(), n, 3));
+        scalar_.solve_three(Eigen::Map<const Columns>(right.data(), n, 3), context);
     return x;
 }
 
 NormalSystem::Solution NormalSystem::solve_coupled(double condition_limit, const Context& context)
 {
     const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(right_.data(), coupled_.size());
-    const auto cancelled = [&] { return context.cancelled(); };
+    const auto by_coupled = [&](const Eigen::VectorXd& r) { return coupled_.solve(r, context); };
+    const auto by_scalar = [&](const Eigen::VectorXd& r) { return solve_by_scalar(r, context); };
     Solution solution;
     std::optional<Eigen::VectorXd> x;
     if (coupled_.has_factor()) {
         // Rounds differ little: a factor of an earlier one still preconditions well, and a few
         // iterations cost much less than a factorisation.
-        x = conjugate_gradients(
-            coupled_, right, reuse_iterations, reuse_tolerance,
-            [&](const Eigen::VectorXd& r) -> Eigen::VectorXd { return coupled_.solve(r); },
-            cancelled);
+        x = conjugate_gradients(coupled_, right, with_old_factor, by_coupled, context);
         solution.condition = coupled_condition_;
     } else if (scalar_.has_factor()) {
-        x = conjugate_gradients(
-            coupled_, right, reuse_iterations, reuse_tolerance,
-            [&](const Eigen::VectorXd& r) { return solve_by_scalar(r); }, cancelled);
-        solution.condition = 0.0;
+        x = conjugate_gradients(coupled_, right, with_old_factor, by_scalar, context);
     }
-    if (!x && !context.cancelled()) {
-        if (!coupled_.factorize(context) || context.cancelled())
-            return solution;
+    for (const auto precision : {ScaledFactor::Precision::single, ScaledFactor::Precision::full}) {
+        if (x || context.cancelled())
+            break;
+        if (!coupled_.factorize(precision, context))
+            continue;
         solution.condition = coupled_condition_ = coupled_.condition(context);
         if (!(solution.condition <= condition_limit)) {
             coupled_.drop_factor();
             return solution;
         }
-        x = coupled_.solve(right);
+        x = conjugate_gradients(coupled_, right, with_own_factor, by_coupled, context);
     }
-    if (x)
+    if (x && !context.cancelled())
         set_move(*x, solution);
     return solution;
 }

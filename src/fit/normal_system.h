@@ -14,8 +14,11 @@ struct FitRow {
     Index piece = invalid_index;
     double s = 0.0, t = 0.0; //!< Parameters in the piece, in [0, 1].
     double weight = 0.0;
-    Vec3 residual;         //!< Sample minus surface point: the wanted move.
-    Vec3 normal;           //!< Unit normal of the surface there; zero: all directions count alike.
+    Vec3 residual; //!< Sample minus surface point: the wanted move.
+    Vec3 normal;   //!< Unit normal of the surface there; zero: all directions count alike.
+    //! True: the sample is one of a curve, whose unit tangent is in place of the normal; distances
+    //! across the tangent count in full, and along it with mu.
+    bool of_curve = false;
     double least_mu = 0.0; //!< See RoundProblem.
 };
 
@@ -31,6 +34,7 @@ RowsByPiece group_by_piece(const std::vector<FitRow>& rows, Index piece_count);
 //!
 //! Over moves d of the free unknowns it minimises
 //!   sum_i w_i [(1 - mu) (n_i . (r_i - d_i))^2 + mu |r_i - d_i|^2] + sum_q f_q E_q(x + d)
+//! (for rows of a curve with unit tangent t_i: |r_i - d_i|^2 - (1 - mu) (t_i . (r_i - d_i))^2),
 //! with mu the problem's or, where that is larger, the row's own, d_i the surface's move at row i
 //! and E_q the exact thin-plate energy of quad q.
 struct RoundProblem {
@@ -73,12 +77,13 @@ private:
     //! Values per unknown in the order of the columns, as moves.
     void set_move(const Eigen::VectorXd& x, Solution& solution) const;
     //! Solves x, y and z each with the factor of the decoupled matrix.
-    Eigen::VectorXd solve_by_scalar(const Eigen::VectorXd& right) const;
+    Eigen::VectorXd solve_by_scalar(const Eigen::VectorXd& right, const Context& context) const;
 
     const ReducedNetwork& network_;
     FactorPlan plan_;
     std::vector<std::size_t> pair_offset_; //!< Per piece: first of its slots.
     std::vector<int> slot_;                //!< Per piece and pair (i <= j): entry of the pattern.
+    std::vector<double> energy_;           //!< Likewise: the piece's thin-plate energy.
     std::vector<double> right_;            //!< 3 per column.
     ScaledFactor scalar_, coupled_;
     double coupled_condition_ = 0.0;

@@ -16,7 +16,7 @@ constexpr std::size_t chunk_points = 64;
 constexpr double suspicious_medians = 5.0;
 //! Cells per Bezier piece of the tessellation that seeds the search from scratch: only the basin of
 //! the right foot has to be found.
-constexpr Index seed_cells = 2;
+constexpr Index seed_cells = 1;
 
 } // namespace
 
@@ -32,15 +32,17 @@ double median(std::vector<double> values)
 std::vector<FootPoint> correct_parameters(const QuadComplex& complex, const SplineSurface& surface,
                                           const std::vector<Vec3>& points,
                                           const std::vector<DomainPoint>& where,
-                                          const Context& context)
+                                          const std::vector<char>& on_curve, const Context& context)
 {
     const SurfaceWalk walk(complex, surface);
+    const auto is_of_curve = [&](std::size_t i) { return !on_curve.empty() && on_curve[i]; };
     std::vector<FootPoint> feet(points.size());
-    if (!for_each_chunk(context, points.size(), chunk_points,
-                        [&](std::size_t begin, std::size_t end) {
-                            for (std::size_t i = begin; i < end; ++i)
-                                feet[i] = walk.descend(points[i], where[i]);
-                        }))
+    if (!for_each_chunk(
+            context, points.size(), chunk_points, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i)
+                    feet[i] = is_of_curve(i) ? walk.descend_along_curve(points[i], where[i])
+                                             : walk.descend(points[i], where[i]);
+            }))
         return {};
     std::vector<double> distances(feet.size());
     for (std::size_t i = 0; i < feet.size(); ++i)
@@ -48,7 +50,7 @@ std::vector<FootPoint> correct_parameters(const QuadComplex& complex, const Spli
     const double limit = suspicious_medians * median(distances);
     std::vector<std::size_t> suspicious;
     for (std::size_t i = 0; i < feet.size(); ++i)
-        if (distances[i] > limit)
+        if (distances[i] > limit && !is_of_curve(i))
             suspicious.push_back(i);
     if (suspicious.empty())
         return feet;

@@ -15,6 +15,7 @@ namespace bot2nurbs {
 std::vector<FootPoint> correct_parameters(const QuadComplex& complex, const SplineSurface& surface,
                                           const std::vector<Vec3>& points,
                                           const std::vector<DomainPoint>& where,
+                                          const std::vector<char>& on_curve,
                                           const Context& context);
 
 //! Median of the values; 0 when there are none.

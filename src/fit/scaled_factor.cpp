@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fit/scaled_factor.h"
 
-#include <Eigen/Cholesky>
+#include "core/parallel.h"
+
 #include <cmath>
 
 namespace bot2nurbs {
@@ -14,12 +15,9 @@ namespace {
 constexpr int power_iterations = 10;
 //! Fewer when an iteration raises the estimate by less than this share.
 constexpr double power_gain = 0.05;
-//! Columns eliminated between two polls of the context; a front of a thousand rows takes a few
-//! milliseconds for them.
-constexpr Eigen::Index panel_columns = 48;
+constexpr std::size_t chunk_columns = 256;
 
 using Size = Eigen::Index;
-using Panel = Eigen::Map<const Eigen::MatrixXd>;
 
 //! A fixed start vector that no eigenvector of a mesh problem is orthogonal to in practice.
 Eigen::VectorXd start_vector(Size n)
@@ -36,88 +34,54 @@ Eigen::VectorXd start_vector(Size n)
 //! Where entry (a, c) of a symmetric block is among its values.
 constexpr int block_entry[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
 
-//! Eliminates the first columns of a front: they become those of its Cholesky factor, the rest what
-//! they leave. Lower triangles. \return false when a pivot is not positive or when cancelled.
-bool eliminate(Size columns, Eigen::Ref<Eigen::MatrixXd> front, const Context& context)
-{
-    const Size rows = front.rows();
-    for (Size k = 0; k < columns; k += panel_columns) {
-        if (context.cancelled())
-            return false;
-        const Size w = std::min(panel_columns, columns - k), rest = rows - k - w;
-        auto corner = front.block(k, k, w, w);
-        Eigen::Ref<Eigen::MatrixXd> corner_ref(corner);
-        const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(corner_ref);
-        if (factor.info() != Eigen::Success)
-            return false;
-        if (rest == 0)
-            continue;
-        auto below = front.block(k + w, k, rest, w);
-        corner.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
-        front.bottomRightCorner(rest, rest).selfadjointView<Eigen::Lower>().rankUpdate(below, -1.0);
-    }
-    return true;
-}
-
 } // namespace
 
-ScaledFactor::ScaledFactor(const FactorPlan& plan, int block) : plan_(&plan), block_(block) {}
+ScaledFactor::ScaledFactor(const FactorPlan& plan, int block)
+    : plan_(&plan), block_(block), single_(plan, block), full_(plan, block)
+{
+}
 
-Eigen::VectorXd ScaledFactor::times(const Eigen::VectorXd& x) const
+Eigen::VectorXd ScaledFactor::times(const Eigen::VectorXd& x, const Context& context) const
 {
     Eigen::VectorXd y = Eigen::VectorXd::Zero(x.size());
-    const int n = plan_->size();
+    const auto n = static_cast<std::size_t>(plan_->size());
+    const FactorPlan& plan = *plan_;
     if (block_ == 1) {
-        for (int j = 0; j < n; ++j) {
-            double sum = 0.0;
-            for (int e = plan_->column[j]; e < plan_->column[j + 1] - 1; ++e) {
-                y[plan_->row[e]] += values_[e] * x[j];
-                sum += values_[e] * x[plan_->row[e]];
+        for_each_chunk(context, n, chunk_columns, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t j = begin; j < end; ++j) {
+                double sum = 0.0;
+                for (int e = plan.column[j]; e < plan.column[j + 1]; ++e)
+                    sum += values_[e] * x[plan.row[e]];
+                for (int e = plan.lower_column[j] + 1; e < plan.lower_column[j + 1]; ++e)
+                    sum += values_[plan.lower_slot[e]] * x[plan.lower_row[e]];
+                y[static_cast<Size>(j)] = sum;
             }
-            y[j] += sum + values_[plan_->column[j + 1] - 1] * x[j];
-        }
+        });
         return y;
     }
-    for (int j = 0; j < n; ++j) {
-        const double x0 = x[3 * j], x1 = x[3 * j + 1], x2 = x[3 * j + 2];
-        double s0 = 0.0, s1 = 0.0, s2 = 0.0;
-        for (int e = plan_->column[j]; e < plan_->column[j + 1]; ++e) {
-            const double* v = &values_[6 * static_cast<std::size_t>(e)];
-            const int i = plan_->row[e];
-            const double* xi = x.data() + 3 * static_cast<Size>(i);
-            s0 += v[0] * xi[0] + v[1] * xi[1] + v[2] * xi[2];
-            s1 += v[1] * xi[0] + v[3] * xi[1] + v[4] * xi[2];
-            s2 += v[2] * xi[0] + v[4] * xi[1] + v[5] * xi[2];
-            if (i == j)
-                continue;
-            double* yi = y.data() + 3 * static_cast<Size>(i);
-            yi[0] += v[0] * x0 + v[1] * x1 + v[2] * x2;
-            yi[1] += v[1] * x0 + v[3] * x1 + v[4] * x2;
-            yi[2] += v[2] * x0 + v[4] * x1 + v[5] * x2;
+    // Row j of the blocks, then column j, whose blocks are the transposes: all are symmetric.
+    for_each_chunk(context, n, chunk_columns, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t j = begin; j < end; ++j) {
+            double sum[3] = {};
+            const auto add = [&](int slot, int other) {
+                const double* v = &values_[6 * static_cast<std::size_t>(slot)];
+                const double* o = x.data() + 3 * static_cast<Size>(other);
+                sum[0] += v[0] * o[0] + v[1] * o[1] + v[2] * o[2];
+                sum[1] += v[1] * o[0] + v[3] * o[1] + v[4] * o[2];
+                sum[2] += v[2] * o[0] + v[4] * o[1] + v[5] * o[2];
+            };
+            for (int e = plan.column[j]; e < plan.column[j + 1]; ++e)
+                add(e, plan.row[e]);
+            for (int e = plan.lower_column[j] + 1; e < plan.lower_column[j + 1]; ++e)
+                add(plan.lower_slot[e], plan.lower_row[e]);
+            for (int a = 0; a < 3; ++a)
+                y[3 * static_cast<Size>(j) + a] = sum[a];
         }
-        y[3 * j] += s0;
-        y[3 * j + 1] += s1;
-        y[3 * j + 2] += s2;
-    }
+    });
     return y;
 }
 
-void ScaledFactor::assemble_front(const FactorPlan::Supernode& node, const std::vector<int>& local,
-                                  Eigen::Ref<Eigen::MatrixXd> front) const
-{
-    const int b = block_, per_slot = b == 1 ? 1 : 6;
-    for (int j = node.first; j < node.last; ++j)
-        for (int e = plan_->lower_column[j]; e < plan_->lower_column[j + 1]; ++e) {
-            const int i = plan_->lower_row[e];
-            const double* v = &values_[static_cast<std::size_t>(plan_->lower_slot[e]) * per_slot];
-            for (int c = 0; c < b; ++c)
-                for (int a = 0; a < b; ++a)
-                    front(b * local[i] + a, b * (j - node.first) + c) =
-                        v[block_entry[a][c]] * scale_[b * i + a] * scale_[b * j + c];
-        }
-}
-
-bool ScaledFactor::factorize(const Context& context)
+bool ScaledFactor::factorize(Precision precision, const Context& context)
 {
     has_factor_ = false;
     const int n = plan_->size(), b = block_;
@@ -130,128 +94,61 @@ bool ScaledFactor::factorize(const Context& context)
                 return false;
             scale_[b * j + a] = 1.0 / std::sqrt(d);
         }
-    const std::size_t square = static_cast<std::size_t>(b) * b;
-    factor_.resize(plan_->value_count * square);
-    // What the eliminated columns leave for the others waits on a stack, children above parents.
-    std::vector<double> stack(plan_->largest_stack * square);
-    std::vector<double> buffer(static_cast<std::size_t>(plan_->largest_front) *
-                               plan_->largest_front * square);
-    std::vector<std::size_t> waiting;
-    std::vector<int> owner, local(n, -1);
-    std::size_t top = 0;
-    for (std::size_t s = 0; s < plan_->supernodes.size(); ++s) {
-        const FactorPlan::Supernode& node = plan_->supernodes[s];
-        const int* below = plan_->rows_below.data() + node.rows;
-        for (int j = node.first; j < node.last; ++j)
-            local[j] = j - node.first;
-        for (int k = 0; k < node.row_count; ++k)
-            local[below[k]] = node.width() + k;
-        const Size m = static_cast<Size>(b) * node.height(),
-                   w = static_cast<Size>(b) * node.width(), r = m - w;
-        Eigen::Map<Eigen::MatrixXd> front(buffer.data(), m, m);
-        front.setZero();
-        assemble_front(node, local, front);
-        while (!owner.empty() && plan_->supernodes[owner.back()].parent == static_cast<int>(s)) {
-            const FactorPlan::Supernode& child = plan_->supernodes[owner.back()];
-            const Size side = static_cast<Size>(b) * child.row_count;
-            top -= static_cast<std::size_t>(side * side);
-            const double* update = stack.data() + top;
-            const int* rows = plan_->rows_below.data() + child.rows;
-            for (int j = 0; j < child.row_count; ++j)
-                for (int c = 0; c < b; ++c) {
-                    double* to = &front(0, static_cast<Size>(b) * local[rows[j]] + c);
-                    const double* from = update + (static_cast<Size>(b) * j + c) * side;
-                    for (int i = j; i < child.row_count; ++i)
-                        for (int a = 0; a < b; ++a)
-                            to[b * local[rows[i]] + a] += from[b * i + a];
-                }
-            owner.pop_back();
-        }
-        if (!eliminate(w, front, context))
-            return false;
-        Eigen::Map<Eigen::MatrixXd>(factor_.data() + node.values * square, m, w) =
-            front.leftCols(w);
-        if (node.parent >= 0) {
-            Eigen::Map<Eigen::MatrixXd>(stack.data() + top, r, r) = front.bottomRightCorner(r, r);
-            top += static_cast<std::size_t>(r * r);
-            owner.push_back(static_cast<int>(s));
-        }
-    }
-    has_factor_ = true;
-    return true;
+    precision_ = precision;
+    has_factor_ = precision == Precision::single ? single_.factorize(values_, scale_, context)
+                                                 : full_.factorize(values_, scale_, context);
+    return has_factor_;
 }
 
-template <class Columns> void ScaledFactor::solve_scaled(Columns& x) const
+void ScaledFactor::solve_scaled(Eigen::VectorXd& x, const Context& context) const
 {
-    const Size b = block_;
-    const std::size_t square = static_cast<std::size_t>(b * b);
-    Columns gathered;
-    for (const FactorPlan::Supernode& node : plan_->supernodes) {
-        const Size w = b * node.width(), r = b * node.row_count;
-        const Panel panel(factor_.data() + node.values * square, w + r, w);
-        auto own = x.middleRows(b * node.first, w);
-        panel.topRows(w).triangularView<Eigen::Lower>().solveInPlace(own);
-        gathered.noalias() = panel.bottomRows(r) * own;
-        const int* below = plan_->rows_below.data() + node.rows;
-        for (Size c = 0; c < x.cols(); ++c)
-            for (Size k = 0; k < node.row_count; ++k)
-                for (Size a = 0; a < b; ++a)
-                    x(b * below[k] + a, c) -= gathered(b * k + a, c);
+    if (precision_ == Precision::full) {
+        full_.solve(x, context);
+        return;
     }
-    for (auto it = plan_->supernodes.rbegin(); it != plan_->supernodes.rend(); ++it) {
-        const FactorPlan::Supernode& node = *it;
-        const Size w = b * node.width(), r = b * node.row_count;
-        const Panel panel(factor_.data() + node.values * square, w + r, w);
-        auto own = x.middleRows(b * node.first, w);
-        const int* below = plan_->rows_below.data() + node.rows;
-        gathered.resize(r, x.cols());
-        for (Size c = 0; c < x.cols(); ++c)
-            for (Size k = 0; k < node.row_count; ++k)
-                for (Size a = 0; a < b; ++a)
-                    gathered(b * k + a, c) = x(b * below[k] + a, c);
-        own.noalias() -= panel.bottomRows(r).transpose() * gathered;
-        panel.topRows(w).triangularView<Eigen::Lower>().transpose().solveInPlace(own);
-    }
+    Eigen::VectorXf rounded = x.cast<float>();
+    single_.solve(rounded, context);
+    x = rounded.cast<double>();
 }
 
-Eigen::VectorXd ScaledFactor::solve(const Eigen::VectorXd& right) const
+Eigen::VectorXd ScaledFactor::solve(const Eigen::VectorXd& right, const Context& context) const
 {
     Eigen::VectorXd x = scale_.cwiseProduct(right);
-    solve_scaled(x);
+    solve_scaled(x, context);
     return scale_.cwiseProduct(x);
 }
 
-Eigen::MatrixX3d ScaledFactor::solve_three(const Eigen::MatrixX3d& right) const
+Eigen::MatrixX3d ScaledFactor::solve_three(const Eigen::MatrixX3d& right,
+                                           const Context& context) const
 {
     Eigen::MatrixX3d x = scale_.asDiagonal() * right;
-    solve_scaled(x);
+    full_.solve(x, context);
     return scale_.asDiagonal() * x;
 }
 
-double ScaledFactor::condition(const Context& context) const
+double ScaledFactor::condition(const Context& context)
 {
     // The norms grow from step to step; when they hardly do any more, the rest is not worth it.
-    double largest = 0.0, inverse_largest = 0.0, last = -1.0;
-    Eigen::VectorXd v = start_vector(size());
-    for (int i = 0; i < power_iterations && largest > last * (1.0 + power_gain); ++i) {
-        if (context.cancelled())
-            return INFINITY;
-        v = scale_.cwiseProduct(times(scale_.cwiseProduct(v)));
-        last = largest;
-        largest = v.norm();
-        v /= largest;
-    }
-    v = start_vector(size());
-    last = -1.0;
-    for (int i = 0; i < power_iterations && inverse_largest > last * (1.0 + power_gain); ++i) {
-        if (context.cancelled())
-            return INFINITY;
-        solve_scaled(v);
-        last = inverse_largest;
-        inverse_largest = v.norm();
-        v /= inverse_largest;
-    }
-    return largest * inverse_largest;
+    // Between rounds the outermost eigenvectors change little, so the last ones are a good start.
+    const auto grow = [&](Eigen::VectorXd& v, const auto& apply) -> double {
+        if (v.size() == 0)
+            v = start_vector(size());
+        double length = 0.0, last = -1.0;
+        for (int i = 0; i < power_iterations && length > last * (1.0 + power_gain); ++i) {
+            if (context.cancelled())
+                return INFINITY;
+            apply(v);
+            last = length;
+            length = v.norm();
+            v /= length;
+        }
+        return length;
+    };
+    return grow(top_,
+                [&](Eigen::VectorXd& v) {
+                    v = scale_.cwiseProduct(times(scale_.cwiseProduct(v), context));
+                }) *
+           grow(bottom_, [&](Eigen::VectorXd& v) { solve_scaled(v, context); });
 }
 
 } // namespace bot2nurbs

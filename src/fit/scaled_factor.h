@@ -2,19 +2,23 @@
 #pragma once
 
 #include "bot2nurbs/context.h"
-#include "fit/factor_plan.h"
+#include "fit/frontal_factor.h"
 
 #include <Eigen/Core>
+#include <cmath>
 #include <optional>
 
 namespace bot2nurbs {
 
 //! A symmetric positive definite sparse matrix of symmetric b x b blocks, b = 1 or 3, and a
-//! Cholesky factor of it, scaled to unit diagonal (Jacobi). The factorisation is multifrontal: all
-//! arithmetic is in dense kernels. The factor may be left behind when the matrix changes: it then
-//! preconditions conjugate gradients.
+//! Cholesky factor of it, scaled to unit diagonal (Jacobi). The factor may be left behind when the
+//! matrix changes: it then preconditions conjugate gradients.
 class ScaledFactor {
 public:
+    //! Single precision takes half the time and memory, for a factor that is good enough to
+    //! precondition with unless the matrix is nearly singular.
+    enum class Precision { single, full };
+
     //! The plan must outlive this.
     ScaledFactor(const FactorPlan& plan, int block);
 
@@ -23,50 +27,62 @@ public:
     //! Scalar rows.
     Eigen::Index size() const { return static_cast<Eigen::Index>(plan_->size()) * block_; }
     //! The matrix, as it is now, times a vector.
-    Eigen::VectorXd times(const Eigen::VectorXd& x) const;
+    Eigen::VectorXd times(const Eigen::VectorXd& x, const Context& context) const;
 
     //! Scales and factorises. \return false when the matrix is not positive definite to rounding or
     //! the context was cancelled, which is polled at every panel; there is then no factor.
-    bool factorize(const Context& context);
+    bool factorize(Precision precision, const Context& context);
     bool has_factor() const { return has_factor_; }
     //! Forgets a factor that is not to be trusted.
     void drop_factor() { has_factor_ = false; }
-    //! Solves with the matrix that was factorised last. \pre has_factor()
-    Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
-    //! The same for three right-hand sides in one pass over the factor.
-    Eigen::MatrixX3d solve_three(const Eigen::MatrixX3d& right) const;
+    //! Solves with the matrix that was factorised last, to the precision of the factor.
+    //! \pre has_factor()
+    Eigen::VectorXd solve(const Eigen::VectorXd& right, const Context& context) const;
+    //! The same for three right-hand sides in one pass over the factor. \pre full precision
+    Eigen::MatrixX3d solve_three(const Eigen::MatrixX3d& right, const Context& context) const;
     //! Estimate, from below, of the 2-norm condition of the scaled matrix, by power iteration on it
     //! and on its inverse. \pre `factorize` was the last change of the matrix
     //! Infinite when the context was cancelled.
-    double condition(const Context& context) const;
+    double condition(const Context& context);
 
 private:
-    void assemble_front(const FactorPlan::Supernode& node, const std::vector<int>& local,
-                        Eigen::Ref<Eigen::MatrixXd> front) const;
     //! In place, with the scaled matrix.
-    template <class Columns> void solve_scaled(Columns& x) const;
+    void solve_scaled(Eigen::VectorXd& x, const Context& context) const;
 
     const FactorPlan* plan_;
     int block_;
-    std::vector<double> values_, factor_;
+    std::vector<double> values_;
     Eigen::VectorXd scale_;
+    FrontalFactor<float> single_;
+    FrontalFactor<double> full_;
+    Precision precision_ = Precision::full;
     bool has_factor_ = false;
+    Eigen::VectorXd top_, bottom_; //!< Last estimates of the outermost eigenvectors.
+};
+
+//! When conjugate gradients stop.
+struct GradientLimits {
+    int iterations = 0;
+    double tolerance = 0.0; //!< Share of the preconditioned residual that is left.
 };
 
 //! Solves `matrix` (positive definite) by conjugate gradients, preconditioned by `precondition`,
-//! from zero, until the preconditioned residual is `tolerance` of its start.
-//! \return nothing when it took more than `limit` iterations, broke down or `cancelled()` said so.
-template <class Precondition, class Cancelled> std::optional<Eigen::VectorXd>
-conjugate_gradients(const ScaledFactor& matrix, const Eigen::VectorXd& right, int limit,
-                    double tolerance, const Precondition& precondition, const Cancelled& cancelled)
+//! from zero. \return nothing when it broke down, would clearly take more iterations than allowed,
+//! or the context was cancelled.
+template <class Precondition> std::optional<Eigen::VectorXd>
+conjugate_gradients(const ScaledFactor& matrix, const Eigen::VectorXd& right,
+                    const GradientLimits& limits, const Precondition& precondition,
+                    const Context& context)
 {
+    // Iterations after which the rate so far says whether the rest is worth while.
+    constexpr int trial = 4;
     Eigen::VectorXd x = Eigen::VectorXd::Zero(right.size()), r = right, z = precondition(r), p = z;
     double rz = r.dot(z);
-    const double enough = tolerance * tolerance * rz;
+    const double start = rz, enough = limits.tolerance * limits.tolerance * rz;
     if (rz == 0.0)
         return x;
-    for (int i = 0; i < limit && !cancelled(); ++i) {
-        const Eigen::VectorXd q = matrix.times(p);
+    for (int i = 1; i <= limits.iterations && !context.cancelled(); ++i) {
+        const Eigen::VectorXd q = matrix.times(p, context);
         const double curvature = p.dot(q);
         if (!(curvature > 0.0) || !(rz > 0.0))
             return std::nullopt;
@@ -77,6 +93,8 @@ conjugate_gradients(const ScaledFactor& matrix, const Eigen::VectorXd& right, in
         const double next = r.dot(z);
         if (next <= enough)
             return x;
+        if (i >= trial && i * std::log(enough / start) < limits.iterations * std::log(next / start))
+            return std::nullopt;
         p = z + (next / rz) * p;
         rz = next;
     }

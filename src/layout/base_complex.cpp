@@ -61,6 +61,30 @@ SurfacePath join(const ManifoldMesh& mesh, Index a, Index b, const Cut& cut)
     return path;
 }
 
+// The way along the boundary from a site to the next one, the surface to the left.
+SurfacePath boundary_path(const Tiles& tiles, Index site)
+{
+    const ManifoldMesh& mesh = tiles.mesh();
+    SurfacePath path;
+    path.a = tiles.sites()[site];
+    path.b = mesh.to(mesh.halfedge_at(path.a));
+    while (tiles.sites()[tiles.labels()[path.b]] != path.b) {
+        PathNode node;
+        node.vertex = path.b;
+        path.nodes.push_back(node);
+        path.b = mesh.to(mesh.halfedge_at(path.b));
+    }
+    return path;
+}
+
+// A path of mesh vertices, walked the other way.
+SurfacePath reversed(SurfacePath path)
+{
+    std::swap(path.a, path.b);
+    std::reverse(path.nodes.begin(), path.nodes.end());
+    return path;
+}
+
 } // namespace
 
 Result<PatchComplex> build_base_complex(const Tiles& tiles, Context& context)
@@ -81,18 +105,25 @@ Result<PatchComplex> build_base_complex(const Tiles& tiles, Context& context)
                              std::to_string(tiles.sites()[i]) + " " + why,
                          tiles.sites()[i]};
         };
-        const std::optional<Overlay> tile = builder.tile(tiles.labels(), own, neighbour);
+        const Index site = tiles.sites()[i];
+        const std::optional<Overlay> tile = builder.tile(tiles.labels(), own, site, neighbour);
         if (!tile)
             return failed("is not a disk");
         const auto map = map_to_polygon(*tile, regular_polygon(tile->side_count()));
         if (!map)
             return failed("cannot be mapped to a polygon");
-        Index center = invalid_index;
+        // A site at the boundary is the first corner of its tile; the cuts that begin and end there
+        // are crossed along the boundary.
+        const bool open = neighbour.front() == invalid_index;
+        Index center = open ? 0 : invalid_index;
         for (Index v = tile->boundary_count; v < tile->vertices.size(); ++v)
-            if (tile->vertices[v].mesh_vertex == tiles.sites()[i])
+            if (tile->vertices[v].mesh_vertex == site)
                 center = v;
         std::vector<Segment> spokes;
+        std::vector<Index> side_of;
         for (Index s = 0; s < tile->side_count(); ++s) {
+            if (open && (s <= 1 || s + 2 >= tile->side_count()))
+                continue;
             Cut& cut = cuts[{std::min(i, neighbour[s]), std::max(i, neighbour[s])}];
             Index target = middle_of_side(*tile, s);
             if (cut.edge == invalid_index) {
@@ -103,20 +134,22 @@ Result<PatchComplex> build_base_complex(const Tiles& tiles, Context& context)
                         target = v;
             }
             spokes.push_back({center, target});
+            side_of.push_back(s);
         }
         auto drawn = draw_segments(mesh, *tile, map->uv, spokes);
         if (!drawn)
             return failed("cannot hold its spokes");
-        for (Index s = 0; s < tile->side_count(); ++s) {
-            Cut& cut = cuts[{std::min(i, neighbour[s]), std::max(i, neighbour[s])}];
-            HalfPath& half = cut.half[i < neighbour[s] ? 0 : 1];
-            half.nodes = std::move((*drawn)[s].nodes);
+        for (std::size_t k = 0; k < side_of.size(); ++k) {
+            const Index other = neighbour[side_of[k]];
+            Cut& cut = cuts[{std::min(i, other), std::max(i, other)}];
+            HalfPath& half = cut.half[i < other ? 0 : 1];
+            half.nodes = std::move((*drawn)[k].nodes);
             if (!half.nodes.empty()) {
                 half.last_face = mesh.face(mesh.twin(half.nodes.back().halfedge));
             } else {
                 // Straight from the site: it is opposite to the cut's edge, or an end of it.
                 for (const Index h : {cut.edge, mesh.twin(cut.edge)})
-                    if (mesh.from(mesh.prev(h)) == tiles.sites()[i])
+                    if (mesh.from(mesh.prev(h)) == site)
                         half.last_face = mesh.face(h);
             }
         }
@@ -128,6 +161,14 @@ Result<PatchComplex> build_base_complex(const Tiles& tiles, Context& context)
         path_of[key] =
             complex.add_path(join(mesh, tiles.sites()[key.first], tiles.sites()[key.second], cut));
     const auto& label = tiles.labels();
+    for (Index i = 0; i < tiles.sites().size(); ++i)
+        if (mesh.is_boundary_vertex(tiles.sites()[i])) {
+            SurfacePath path = boundary_path(tiles, i);
+            const Index j = label[path.b];
+            if (j < i)
+                path = reversed(std::move(path));
+            path_of[{std::min(i, j), std::max(i, j)}] = complex.add_path(std::move(path));
+        }
     for (Index f = 0; f < mesh.face_count(); ++f) {
         const auto& t = mesh.triangle(f);
         const Index l[3] = {label[t[0]], label[t[1]], label[t[2]]};
@@ -145,17 +186,22 @@ Result<PatchComplex> build_base_complex(const Tiles& tiles, Context& context)
 
 void straighten_triangles(PatchComplex& complex, Context& context)
 {
+    OverlayBuilder builder(complex.mesh());
     const Index count = static_cast<Index>(complex.paths().size());
     for (Index p = 0; p < count && !context.cancelled(); ++p) {
         const PatchComplex::Path& path = complex.paths()[p];
+        if (!path.alive || complex.is_boundary(p))
+            continue;
         const std::vector<Index> faces{path.left, path.right};
         const auto border = complex.border(faces);
-        if (!path.alive || !border || border->size() != 4)
+        if (!border || border->size() != 4)
             continue;
         Index a = 0;
         while (complex.start((*border)[a]) != path.geometry.a)
             ++a;
-        complex.replace(faces, *border, {{a, (a + 2) % 4}});
+        auto change = complex.plan(faces, *border, {{a, (a + 2) % 4}}, builder);
+        if (change)
+            complex.apply(std::move(*change));
     }
     complex.compact();
 }

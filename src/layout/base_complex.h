@@ -10,7 +10,8 @@ namespace bot2nurbs {
 //! tiles, a face per junction. Each tile is mapped to a convex polygon, its corners the junctions;
 //! straight spokes run from the site to the middle of each cut. The spokes of the two tiles that
 //! share a cut form a path; the sectors around a junction form its face, a disk by construction.
-//! \cite eck_1995, section 4. \pre tiles.violations() is empty.
+//! Where the mesh has a boundary, the path between two sites that follow each other is the
+//! boundary. \cite eck_1995, section 4. \pre tiles.violations() is empty.
 Result<PatchComplex> build_base_complex(const Tiles& tiles, Context& context);
 
 //! Replaces every path by the diagonal of the map of its two triangles to the square: paths become

@@ -1,35 +1,40 @@
 // SPDX-License-Identifier: MIT
 #include "layout/face_energy.h"
 
+#include "maps/convex_map.h"
+
 #include <limits>
 
 namespace bot2nurbs {
 
-double face_distortion(const PatchComplex& complex, const std::vector<PatchComplex::Side>& border,
-                       OverlayBuilder& builder)
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+} // namespace
+
+double face_distortion(const std::vector<PathSide>& border, OverlayBuilder& builder)
 {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    const auto overlay = complex.overlay(border, builder);
+    const auto overlay = builder.disk(border);
     if (!overlay)
         return infinity;
     const auto map = map_to_polygon(*overlay, unit_square());
     return map ? measure_distortion(*overlay, map->uv).combined() : infinity;
 }
 
-double face_energy(const PatchComplex& complex, const std::vector<PatchComplex::Side>& border,
-                   const SizeMetric& metric, OverlayBuilder& builder, double* size_out)
+FaceEnergy face_energy(const std::vector<PathSide>& border, const SizeMetric& metric,
+                       OverlayBuilder& builder)
 {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    const auto overlay = complex.overlay(border, builder);
+    const auto overlay = builder.disk(border);
     if (!overlay)
-        return infinity;
+        return {infinity, 0.0};
     const bool quad = border.size() == 4;
     const auto map = map_to_polygon(*overlay, quad ? unit_square() : regular_polygon(3));
     if (!map)
-        return infinity;
+        return {infinity, 0.0};
     double size = 0.0;
     for (std::size_t t = 0; t < overlay->triangles.size(); ++t) {
-        const auto& corner = complex.mesh().triangle(overlay->face[t]);
+        const auto& corner = builder.mesh().triangle(overlay->face[t]);
         const double density =
             (metric.density[corner[0]] + metric.density[corner[1]] + metric.density[corner[2]]) /
             3.0;
@@ -39,9 +44,7 @@ double face_energy(const PatchComplex& complex, const std::vector<PatchComplex::
         size += 0.5 * norm(cross(p, q)) * density * density;
     }
     size /= quad ? metric.target_area : 0.5 * metric.target_area;
-    if (size_out)
-        *size_out = size;
-    return measure_distortion(*overlay, map->uv).combined() * size * size;
+    return {measure_distortion(*overlay, map->uv).combined() * size * size, size};
 }
 
 } // namespace bot2nurbs

@@ -3,6 +3,7 @@
 
 #include "bot2nurbs/context.h"
 #include "layout/face_energy.h"
+#include "layout/patch_complex.h"
 
 namespace bot2nurbs {
 

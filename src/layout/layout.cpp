@@ -3,11 +3,14 @@
 
 #include "domain/domain_paths.h"
 #include "layout/base_complex.h"
+#include "layout/ground.h"
 #include "layout/improve.h"
 #include "layout/pair_triangles.h"
-#include "layout/refine_carrier.h"
+#include "layout/place_sites.h"
+#include "layout/proxy.h"
 #include "layout/size_field.h"
 #include "layout/split_in_quads.h"
+#include "layout/uncut.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,84 +19,65 @@ namespace bot2nurbs {
 
 namespace {
 
-// The default number of patches is the shape's bending, k1^2 + k2^2 integrated, between bounds: 25
-// on any sphere, 108 on a torus with radii 1 and 0.4. The upper bound keeps fits fast and B-Reps
-// easy to handle; a tolerance or --patches asks for more.
-constexpr double min_default_patches = 24.0;
-constexpr double max_default_patches = 150.0;
-constexpr double max_default_patches_genus_3 = 300.0;
-constexpr double patches_per_handle = 16.0;
-// Curvature is measured at this fraction of the box diagonal.
-constexpr double curvature_scale = 0.015;
 // Collapsing quads makes the layout regular; this many more are made than wanted, to collapse.
 constexpr double surplus = 1.2;
-// Carrier edges are at most this part of the width of a patch, so that a patch has enough faces for
-// a smooth map: about forty.
-constexpr double carrier_resolution = 0.3;
+// Edges of a coarse mesh that stands for the carrier are this part of a patch's width; it is made
+// where it has so many times fewer faces.
+constexpr double proxy_resolution = 0.2;
+constexpr double proxy_saving = 2.5;
 // Rounds of Lloyd's relaxation; more move sites by less than a mesh edge.
 constexpr int relaxation_rounds = 8;
-// Refining a carrier adds at most this many vertices per face, plus the constant: a sliver whose
-// area is nothing beside its length would ask for any number.
-constexpr std::size_t max_refinement_factor = 4;
-constexpr std::size_t max_refinement_floor = 20000;
-
-double surface_area(const ManifoldMesh& mesh)
+// How many sites to place inside so that about `patches` quads come out.
+Index inner_sites(const LayoutLevel& level, double width, double patches)
 {
-    double area = 0.0;
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        area += 0.5 * norm(mesh.area_vector(f));
-    return area;
-}
-
-// Area in the metric scaled by a density per vertex.
-double scaled_area(const ManifoldMesh& mesh, const std::vector<double>& density)
-{
-    double area = 0.0;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const auto& t = mesh.triangle(f);
-        const double d = (density[t[0]] + density[t[1]] + density[t[2]]) / 3.0;
-        area += 0.5 * norm(mesh.area_vector(f)) * d * d;
+    // On a surface with f quads and b boundary edges, v = f + b / 2 + Euler characteristic; over
+    // all regions of the level. Pieces of curves are about as long as patches are wide.
+    double border = 0.0;
+    for (const Curve& c : level.curves()) {
+        const std::vector<Vec3> p = level.points(c);
+        double length = 0.0;
+        for (std::size_t i = 1; i < p.size(); ++i)
+            length += norm(p[i] - p[i - 1]);
+        border += std::max(1.0, length / width);
     }
-    return area;
+    return static_cast<Index>(std::max(0.0, patches + euler_characteristic(level.mesh()) - border));
 }
 
-Index default_patches(double bending, int genus)
+SizeMetric metric_of(const LayoutLevel& level, double width)
 {
-    double limit = genus >= 3 ? max_default_patches_genus_3 : max_default_patches;
-    limit = std::max(limit, patches_per_handle * genus);
-    const double least = std::max(min_default_patches, 0.5 * patches_per_handle * genus);
-    return static_cast<Index>(std::lround(std::clamp(bending, least, limit)));
+    return {level.density(), width * width};
 }
 
-// Voronoi sites: enough for the patches wanted, evenly spread, then whatever the conditions ask.
-void place_sites(Tiles& tiles, Index count, LayoutSummary& summary, const Context& context)
+// K_tri on a level.
+Result<PatchComplex> make_triangles(const LayoutLevel& level, double width, Index target,
+                                    LayoutSummary& summary, Context& context)
 {
-    // The first site is the vertex farthest from the middle: it does not depend on numbering.
-    const ManifoldMesh& mesh = tiles.mesh();
-    const Vec3 center = mesh.box().center();
-    Index first = 0;
-    for (Index v = 1; v < mesh.vertex_count(); ++v)
-        if (norm_squared(mesh.position(v) - center) > norm_squared(mesh.position(first) - center))
-            first = v;
-    tiles.grow({first});
-    tiles.add_farthest(std::min(count, mesh.vertex_count()));
-    for (int round = 0; round < relaxation_rounds && !context.cancelled(); ++round)
-        tiles.relax();
-    const std::size_t before = tiles.sites().size();
-    while (!context.cancelled()) {
-        const std::vector<Index> missing = tiles.violations();
-        if (missing.empty())
-            break;
-        tiles.add(missing);
-    }
+    SitePlan plan;
+    plan.width = width / std::sqrt(surplus);
+    plan.inner = inner_sites(level, plan.width, surplus * static_cast<double>(target));
+    plan.relaxations = relaxation_rounds;
+    plan.even_regions = true;
+    Tiles tiles(level.mesh(), level.density());
+    summary.sites_added = place_sites(level, plan, tiles, context);
     summary.sites = static_cast<Index>(tiles.sites().size());
-    summary.sites_added = static_cast<Index>(tiles.sites().size() - before);
+    if (context.cancelled())
+        return Context::cancelled_error("layout");
+    Result<PatchComplex> complex = build_base_complex(tiles, context);
+    if (!complex)
+        return complex;
+    straighten_triangles(*complex, context);
+    improve_triangles(*complex, metric_of(level, width), context);
+    if (context.cancelled())
+        return Context::cancelled_error("layout");
+    return complex;
 }
 
-Result<QuadDomain> make_domain(const PatchComplex& complex, CarrierMesh carrier)
+Result<QuadDomain> make_domain(const PatchComplex& complex, CarrierMesh carrier,
+                               const std::vector<char>& is_corner)
 {
     QuadDomain domain;
-    std::vector<Index> number(carrier.mesh.vertex_count(), invalid_index);
+    const ManifoldMesh& mesh = carrier.mesh;
+    std::vector<Index> number(mesh.vertex_count(), invalid_index);
     std::vector<std::array<Index, 4>> quads;
     for (Index f = 0; f < complex.faces().size(); ++f) {
         const std::vector<Index> corners = complex.corners(f);
@@ -107,8 +91,17 @@ Result<QuadDomain> make_domain(const PatchComplex& complex, CarrierMesh carrier)
         }
         quads.push_back(quad);
     }
-    Result<QuadComplex> built =
-        QuadComplex::build(static_cast<Index>(domain.vertices.size()), std::move(quads));
+    std::vector<std::pair<Index, Index>> creases;
+    for (Index p = 0; p < complex.paths().size(); ++p)
+        if (complex.paths()[p].mark == mark_of(FeatureKind::crease) && !complex.is_boundary(p))
+            creases.emplace_back(number[complex.paths()[p].geometry.a],
+                                 number[complex.paths()[p].geometry.b]);
+    std::vector<Index> corners;
+    for (Index v = 0; v < domain.vertices.size(); ++v)
+        if (domain.vertices[v] < is_corner.size() && is_corner[domain.vertices[v]])
+            corners.push_back(v);
+    Result<QuadComplex> built = QuadComplex::build(static_cast<Index>(domain.vertices.size()),
+                                                   std::move(quads), creases, std::move(corners));
     if (!built)
         return built.error();
     domain.complex = std::move(*built);
@@ -124,10 +117,11 @@ Result<QuadDomain> make_domain(const PatchComplex& complex, CarrierMesh carrier)
             path.a = walk.start();
             path.b = walk.end();
             for (std::size_t i = 0; i < walk.node_count(); ++i)
-                path.nodes.push_back(walk.node(carrier.mesh, i));
+                path.nodes.push_back(walk.node(mesh, i));
             domain.edges[e].a = number[path.a];
             domain.edges[e].b = number[path.b];
-            domain.edges[e].path = path_points(carrier.mesh, path);
+            domain.edges[e].path = path_points(mesh, path);
+            domain.edges[e].crease = domain.complex.is_crease(e);
         }
     domain.carrier = std::move(carrier);
     domain.origin = "eck";
@@ -139,78 +133,82 @@ Result<QuadDomain> make_domain(const PatchComplex& complex, CarrierMesh carrier)
 Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOptions& options,
                                   Context& context)
 {
-    if (!source.closed())
-        return Error{ErrorCode::open_mesh, "the automatic layout needs a closed mesh",
-                     invalid_index};
     if (options.patches && *options.patches == 0)
         return Error{ErrorCode::bad_option, "the number of patches must be positive",
                      invalid_index};
     LayoutResult result;
     LayoutSummary& summary = result.summary;
-    const int genus = source.genus();
-    SizeField field = measure_size_field(source, curvature_scale * source.box().diagonal());
-    summary.target_patches =
-        options.patches ? *options.patches : default_patches(field.bending, genus);
+    Ground ground = prepare_ground(source, options, summary);
+    if (context.cancelled())
+        return Context::cancelled_error("layout");
 
-    const double width =
-        std::sqrt(surface_area(source) / static_cast<double>(summary.target_patches));
-    std::vector<double> limit(source.vertex_count());
-    for (Index v = 0; v < source.vertex_count(); ++v)
-        limit[v] = carrier_resolution * width / field.density[v];
-    CarrierMesh carrier = refine_carrier(
-        source, limit, max_refinement_floor + max_refinement_factor * source.face_count());
-    if (carrier.refined) {
-        summary.notes.push_back("edges split where the mesh is coarse for its patches: " +
-                                std::to_string(source.face_count()) + " faces became " +
-                                std::to_string(carrier.mesh.face_count()));
-        field = measure_size_field(carrier.mesh, curvature_scale * source.box().diagonal());
+    // A fine mesh is stood for by a coarse one.
+    std::optional<Proxy> proxy;
+    const double cells = static_cast<double>(summary.target_patches) * 4.0 /
+                         (1.732 * proxy_resolution * proxy_resolution);
+    if (static_cast<double>(ground.carrier.mesh.face_count()) > proxy_saving * cells) {
+        Result<Proxy> built = Proxy::build(*ground.level, proxy_resolution * ground.width, context);
+        if (!built && built.error().code == ErrorCode::cancelled)
+            return built.error();
+        if (built)
+            proxy = std::move(*built);
+        else
+            summary.notes.push_back("laid out on the whole mesh: " + built.error().message);
     }
-    if (context.cancelled())
-        return Context::cancelled_error("layout");
-
-    // V - E + F of quads on a surface of genus g: patches = vertices - (2 - 2 g).
-    const double vertices =
-        surplus * static_cast<double>(summary.target_patches) + 2.0 - 2.0 * genus;
-    Tiles tiles(carrier.mesh, field.density);
-    place_sites(tiles, static_cast<Index>(std::max(vertices, 4.0)), summary, context);
-    if (context.cancelled())
-        return Context::cancelled_error("layout");
-
-    Result<PatchComplex> complex = build_base_complex(tiles, context);
+    const LayoutLevel& level = proxy ? proxy->level() : *ground.level;
+    Result<PatchComplex> complex =
+        make_triangles(level, ground.width, summary.target_patches, summary, context);
     if (!complex)
         return complex.error();
-    straighten_triangles(*complex, context);
-    const auto metric = [&](const CarrierMesh& on) {
-        return SizeMetric{field.density, scaled_area(on.mesh, field.density) /
-                                             static_cast<double>(summary.target_patches)};
-    };
-    improve_triangles(*complex, metric(carrier), context);
-    const auto finish = [&](PatchComplex& quads, CarrierMesh& on) -> Result<LayoutResult> {
-        // Vertices that came with a split have no density of their own yet.
-        if (on.mesh.vertex_count() != field.density.size())
-            field = measure_size_field(on.mesh, curvature_scale * source.box().diagonal());
-        improve_quads(quads, summary.target_patches, metric(on), context);
-        if (context.cancelled())
-            return Context::cancelled_error("layout");
-        Result<QuadDomain> domain = make_domain(quads, std::move(on));
-        if (!domain)
-            return domain.error();
-        result.domain = std::move(*domain);
-        return std::move(result);
+    const auto on_carrier = [&](const PatchComplex& made) -> Result<PatchComplex> {
+        if (!proxy)
+            return uncut(made, *ground.cut, ground.carrier.mesh, ground.marks);
+        Result<PatchComplex> lifted = proxy->lift(made, context);
+        if (!lifted)
+            return lifted;
+        return uncut(*lifted, *ground.cut, ground.carrier.mesh, ground.marks);
     };
     if (!options.split_triangles) {
-        const Result<bool> paired = pair_triangles(*complex, context);
+        PatchComplex quads = *complex;
+        const Result<bool> paired = pair_triangles(quads, context);
         if (!paired)
             return paired.error();
-        if (*paired)
-            return finish(*complex, carrier);
+        if (*paired) {
+            improve_quads(quads, summary.target_patches, metric_of(level, ground.width), context);
+            if (context.cancelled())
+                return Context::cancelled_error("layout");
+            const Result<PatchComplex> lifted = on_carrier(quads);
+            if (!lifted)
+                return lifted.error();
+            Result<QuadDomain> domain =
+                make_domain(*lifted, std::move(ground.carrier), ground.corner);
+            if (!domain)
+                return domain.error();
+            result.domain = std::move(*domain);
+            return result;
+        }
     }
     summary.subdivided = true;
     summary.notes.push_back("triangles split in three quads each");
-    Result<SplitComplex> split = split_in_quads(*complex, source, carrier, context);
+    Result<PatchComplex> triangles = on_carrier(*complex);
+    if (!triangles)
+        return triangles.error();
+    Result<SplitComplex> split = split_in_quads(*triangles, source, ground.carrier, context);
     if (!split)
         return split.error();
-    return finish(split->complex, *split->carrier);
+    const std::vector<double> density(split->carrier->mesh.vertex_count(), 1.0);
+    improve_quads(split->complex, summary.target_patches,
+                  {density, scaled_area(split->carrier->mesh, density) /
+                                static_cast<double>(summary.target_patches)},
+                  context);
+    if (context.cancelled())
+        return Context::cancelled_error("layout");
+    Result<QuadDomain> domain =
+        make_domain(split->complex, std::move(*split->carrier), ground.corner);
+    if (!domain)
+        return domain.error();
+    result.domain = std::move(*domain);
+    return result;
 }
 
 } // namespace bot2nurbs

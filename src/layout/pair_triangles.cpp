@@ -4,6 +4,7 @@
 #include "core/parallel.h"
 #include "layout/face_energy.h"
 #include "layout/pairing.h"
+#include "layout/valences.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 
@@ -14,36 +15,40 @@ namespace bot2nurbs {
 
 namespace {
 
-// What an edge less at a vertex is worth against distortion, per edge the vertex has above six.
+// What an edge less at a vertex is worth against distortion, per edge the vertex has too many.
 constexpr double valence_weight = 0.35;
 // Total cost is lowered among pairings whose worst distortion is within this factor of the optimum.
 constexpr double bottleneck_slack = 1.3;
+// Rounds of splitting triangles that are in the way of a pairing.
+constexpr int max_split_rounds = 8;
 
-} // namespace
+struct Candidates {
+    std::vector<PairCandidate> pairs;
+    std::vector<Index> path; // Of each pair: the path that joining drops.
+};
 
-Result<bool> pair_triangles(PatchComplex& complex, Context& context)
+// All pairs that can be mapped to the square. Empty when cancelled.
+std::optional<Candidates> find_candidates(const PatchComplex& complex, Context& context)
 {
-    std::vector<int> valence(complex.mesh().vertex_count(), 0);
-    for (const auto& p : complex.paths())
-        if (p.alive)
-            ++valence[p.geometry.a], ++valence[p.geometry.b];
     const double infinity = std::numeric_limits<double>::infinity();
     std::vector<double> distortion(complex.paths().size(), infinity);
     oneapi::tbb::enumerable_thread_specific<OverlayBuilder> builders(
         [&complex] { return OverlayBuilder(complex.mesh()); });
     const bool finished =
         for_each_chunk(context, distortion.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t p = begin; p < end; ++p) {
+            for (Index p = static_cast<Index>(begin); p < end; ++p) {
                 const PatchComplex::Path& path = complex.paths()[p];
+                if (!path.alive || complex.is_fixed(p))
+                    continue;
                 const auto border = complex.border({path.left, path.right});
                 if (border && border->size() == 4)
-                    distortion[p] = face_distortion(complex, *border, builders.local());
+                    distortion[p] = face_distortion(complex.geometry(*border), builders.local());
             }
         });
     if (!finished)
-        return Context::cancelled_error("pairing");
-    std::vector<PairCandidate> candidates;
-    std::vector<Index> path_of;
+        return std::nullopt;
+    const Valences valences(complex, 3);
+    Candidates result;
     for (Index p = 0; p < complex.paths().size(); ++p) {
         if (!std::isfinite(distortion[p]))
             continue;
@@ -52,26 +57,67 @@ Result<bool> pair_triangles(PatchComplex& complex, Context& context)
         c.face_a = path.left;
         c.face_b = path.right;
         c.distortion = distortion[p];
-        // A triangle vertex of valence six that loses two edges has four; what joining across an
-        // edge does to a vertex is counted from there.
-        const double a = static_cast<double>(valence[path.geometry.a]) - 6.0;
-        const double b = static_cast<double>(valence[path.geometry.b]) - 6.0;
-        c.cost = c.distortion - valence_weight * (a + b);
-        candidates.push_back(c);
-        path_of.push_back(p);
+        // A vertex that has as many edges as wanted of triangles and loses a third has as many as
+        // wanted of quads; what joining across an edge does to a vertex is counted from there.
+        c.cost = c.distortion - valence_weight * (valences.excess(path.geometry.a) +
+                                                  valences.excess(path.geometry.b));
+        result.pairs.push_back(c);
+        result.path.push_back(p);
     }
-    const auto chosen =
-        match_faces(static_cast<Index>(complex.faces().size()), candidates, bottleneck_slack);
-    if (!chosen)
+    return result;
+}
+
+// Splits a triangle in three at the mesh vertex nearest to its middle. False when there is none.
+bool split_triangle(PatchComplex& complex, Index face, OverlayBuilder& builder)
+{
+    const std::vector<PatchComplex::Side> border = complex.faces()[face].sides;
+    const auto disk = map_disk(builder, complex.geometry(border));
+    if (!disk)
         return false;
-    for (const Index c : *chosen) {
-        const PatchComplex::Path& path = complex.paths()[path_of[c]];
-        const std::vector<Index> faces{path.left, path.right};
-        if (!complex.replace(faces, *complex.border(faces), {}))
-            return Error{ErrorCode::internal, "a pair of faces could not be joined", path_of[c]};
+    Index center = invalid_index;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (Index v = disk->overlay.boundary_count; v < disk->overlay.vertices.size(); ++v)
+        if (disk->overlay.vertices[v].mesh_vertex != invalid_index && norm(disk->uv[v]) < nearest) {
+            nearest = norm(disk->uv[v]);
+            center = disk->overlay.vertices[v].mesh_vertex;
+        }
+    if (center == invalid_index)
+        return false;
+    const Index in = invalid_index;
+    auto change = complex.plan({face}, border, {{0, in}, {1, in}, {2, in}}, *disk, center);
+    if (change)
+        complex.apply(std::move(*change));
+    return change.has_value();
+}
+
+} // namespace
+
+Result<bool> pair_triangles(PatchComplex& complex, Context& context)
+{
+    for (int round = 0; round <= max_split_rounds; ++round) {
+        const auto candidates = find_candidates(complex, context);
+        if (!candidates)
+            return Context::cancelled_error("pairing");
+        const Index count = static_cast<Index>(complex.faces().size());
+        const auto chosen = match_faces(count, candidates->pairs, bottleneck_slack);
+        if (chosen) {
+            for (const Index c : *chosen) {
+                const PatchComplex::Path& path = complex.paths()[candidates->path[c]];
+                const std::vector<Index> faces{path.left, path.right};
+                complex.apply({faces, *complex.border(faces), {}, {}});
+            }
+            complex.compact();
+            return true;
+        }
+        OverlayBuilder builder(complex.mesh());
+        bool changed = false;
+        for (const Index f : blocking_faces(count, candidates->pairs))
+            changed = split_triangle(complex, f, builder) || changed;
+        complex.compact();
+        if (!changed)
+            break;
     }
-    complex.compact();
-    return true;
+    return false;
 }
 
 } // namespace bot2nurbs

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "layout/pairing.h"
 
+#include "core/disjoint_sets.h"
+
 #include <lemon/matching.h>
 #include <lemon/smart_graph.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace bot2nurbs {
 
@@ -44,10 +47,9 @@ bool has_perfect_matching(Index face_count, const std::vector<PairCandidate>& al
     return static_cast<Index>(2 * matching.matchingSize()) == face_count;
 }
 
-} // namespace
-
+// As match_faces, for faces that candidates connect.
 std::optional<std::vector<Index>>
-match_faces(Index face_count, const std::vector<PairCandidate>& candidates, double slack)
+match_connected(Index face_count, const std::vector<PairCandidate>& candidates, double slack)
 {
     std::vector<double> limits;
     for (const PairCandidate& c : candidates)
@@ -82,6 +84,54 @@ match_faces(Index face_count, const std::vector<PairCandidate>& candidates, doub
     for (std::size_t i = 0; i < c.chosen.size(); ++i)
         if (matching.matching(c.graph.edgeFromId(static_cast<int>(i))))
             result.push_back(c.chosen[i]);
+    return result;
+}
+
+} // namespace
+
+std::optional<std::vector<Index>>
+match_faces(Index face_count, const std::vector<PairCandidate>& candidates, double slack)
+{
+    DisjointSets sets(face_count);
+    for (const PairCandidate& c : candidates)
+        sets.join(c.face_a, c.face_b);
+    // Faces and candidates of each connected set, in its own numbers.
+    std::vector<Index> number(face_count), size(face_count, 0);
+    for (Index f = 0; f < face_count; ++f)
+        number[f] = size[sets.find(f)]++;
+    std::vector<std::vector<Index>> members(face_count); // Per set: its candidates.
+    for (Index i = 0; i < candidates.size(); ++i)
+        members[sets.find(candidates[i].face_a)].push_back(i);
+    std::vector<Index> result;
+    for (Index root = 0; root < face_count; ++root) {
+        if (size[root] == 0)
+            continue;
+        std::vector<PairCandidate> own;
+        for (const Index i : members[root]) {
+            own.push_back(candidates[i]);
+            own.back().face_a = number[candidates[i].face_a];
+            own.back().face_b = number[candidates[i].face_b];
+        }
+        const auto chosen = match_connected(size[root], own, slack);
+        if (!chosen)
+            return std::nullopt;
+        for (const Index i : *chosen)
+            result.push_back(members[root][i]);
+    }
+    std::sort(result.begin(), result.end());
+    return result;
+}
+
+std::vector<Index> blocking_faces(Index face_count, const std::vector<PairCandidate>& candidates)
+{
+    const Candidates c(face_count, candidates, std::numeric_limits<double>::infinity());
+    lemon::MaxMatching<Graph> matching(c.graph);
+    matching.run();
+    std::vector<Index> result;
+    for (Index f = 0; f < face_count; ++f)
+        if (matching.status(c.graph.nodeFromId(static_cast<int>(f))) ==
+            lemon::MaxMatching<Graph>::ODD)
+            result.push_back(f);
     return result;
 }
 

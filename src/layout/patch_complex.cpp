@@ -47,14 +47,38 @@ PatchComplex::Side PatchComplex::previous(const Side& s) const
 
 std::vector<PatchComplex::Side> PatchComplex::star(const Side& s) const
 {
+    // At the boundary begin where no face lies to the right.
+    Side first = s;
+    while (face_at(opposite(first)) != invalid_index) {
+        first = next(opposite(first));
+        if (first == s)
+            break;
+    }
     std::vector<Side> around;
-    Side current = s;
+    Side current = first;
     do {
         around.push_back(current);
-        const Side before = previous(current);
-        current = {before.path, !before.reversed};
-    } while (!(current == s));
+        if (face_at(current) == invalid_index)
+            break;
+        current = opposite(previous(current));
+    } while (!(current == first));
     return around;
+}
+
+std::vector<Index> PatchComplex::faces_around(const Side& s) const
+{
+    std::vector<Index> faces;
+    for (const Side& spoke : star(s))
+        if (face_at(spoke) != invalid_index)
+            faces.push_back(face_at(spoke));
+    return faces;
+}
+
+bool PatchComplex::is_fixed_vertex(const Side& s) const
+{
+    const std::vector<Side> around = star(s);
+    return std::any_of(around.begin(), around.end(),
+                       [this](const Side& spoke) { return is_fixed(spoke.path); });
 }
 
 std::vector<Index> PatchComplex::corners(Index face) const
@@ -74,15 +98,22 @@ std::vector<PathSide> PatchComplex::geometry(const std::vector<Side>& sides) con
     return result;
 }
 
-std::optional<Overlay> PatchComplex::overlay(Index face)
+std::vector<PatchComplex::Side> PatchComplex::vertex_sides() const
 {
-    return builder_.disk(geometry(faces_[face].sides));
-}
-
-std::optional<Overlay> PatchComplex::overlay(const std::vector<Side>& border,
-                                             OverlayBuilder& builder) const
-{
-    return builder.disk(geometry(border));
+    std::vector<Side> at(mesh().vertex_count());
+    for (Index p = 0; p < paths_.size(); ++p)
+        if (paths_[p].alive) {
+            const SurfacePath& g = paths_[p].geometry;
+            if (at[g.a].path == invalid_index)
+                at[g.a] = {p, false};
+            if (at[g.b].path == invalid_index)
+                at[g.b] = {p, true};
+        }
+    std::vector<Side> result;
+    for (const Side& s : at)
+        if (s.path != invalid_index)
+            result.push_back(s);
+    return result;
 }
 
 std::optional<std::vector<PatchComplex::Side>>
@@ -94,7 +125,7 @@ PatchComplex::border(const std::vector<Index>& faces) const
     std::vector<Side> outer;
     for (const Index f : faces)
         for (const Side& s : faces_[f].sides)
-            if (!inside(face_at({s.path, !s.reversed})))
+            if (!inside(face_at(opposite(s))))
                 outer.push_back(s);
     if (outer.size() < 3)
         return std::nullopt;
@@ -104,8 +135,8 @@ PatchComplex::border(const std::vector<Index>& faces) const
     do {
         chain.push_back(s);
         Side n = next(s);
-        while (inside(face_at({n.path, !n.reversed})))
-            n = next({n.path, !n.reversed});
+        while (inside(face_at(opposite(n))))
+            n = next(opposite(n));
         s = n;
     } while (!(s == outer.front()) && chain.size() <= outer.size());
     if (chain.size() != outer.size())
@@ -119,137 +150,72 @@ PatchComplex::border(const std::vector<Index>& faces) const
     return chain;
 }
 
-std::optional<MappedDisk> PatchComplex::mapped(const std::vector<Side>& border)
-{
-    return map_disk(builder_, geometry(border));
-}
-
-bool PatchComplex::replace(const std::vector<Index>& old_faces, const std::vector<Side>& border,
-                           const std::vector<std::pair<Index, Index>>& chords)
-{
-    if (chords.empty()) {
-        exchange(old_faces, border, chords, {});
-        return true;
-    }
-    const std::optional<MappedDisk> disk = mapped(border);
-    return disk && replace(old_faces, border, chords, *disk);
-}
-
-bool PatchComplex::replace(const std::vector<Index>& old_faces, const std::vector<Side>& border,
-                           const std::vector<std::pair<Index, Index>>& chords,
-                           const MappedDisk& disk, Index center)
+std::optional<PatchComplex::Change> PatchComplex::plan(std::vector<Index> faces,
+                                                       std::vector<Side> border,
+                                                       std::vector<Chord> chords,
+                                                       const MappedDisk& disk, Index center) const
 {
     auto drawn = retile(mesh(), disk, chords, center);
     if (!drawn)
-        return false;
-    exchange(old_faces, border, chords, std::move(*drawn));
-    return true;
+        return std::nullopt;
+    return Change{std::move(faces), std::move(border), std::move(chords), std::move(*drawn)};
 }
 
-void PatchComplex::exchange(const std::vector<Index>& old_faces, const std::vector<Side>& border,
-                            const std::vector<std::pair<Index, Index>>& chords,
-                            std::vector<SurfacePath> drawn)
+std::optional<PatchComplex::Change> PatchComplex::plan(std::vector<Index> faces,
+                                                       std::vector<Side> border,
+                                                       std::vector<Chord> chords,
+                                                       OverlayBuilder& builder) const
 {
-    const auto inside = [&old_faces](Index f) {
-        return std::find(old_faces.begin(), old_faces.end(), f) != old_faces.end();
+    if (chords.empty())
+        return Change{std::move(faces), std::move(border), {}, {}};
+    const std::optional<MappedDisk> disk = map_disk(builder, geometry(border));
+    if (!disk)
+        return std::nullopt;
+    return plan(std::move(faces), std::move(border), std::move(chords), *disk);
+}
+
+std::vector<std::vector<PathSide>> PatchComplex::faces_after(const Change& change) const
+{
+    std::vector<std::vector<PathSide>> result;
+    for (const auto& piece : trace_faces(static_cast<Index>(change.border.size()), change.chords)) {
+        std::vector<PathSide> sides;
+        for (const TracedSide& t : piece) {
+            const Side s = t.is_chord ? Side{} : change.border[t.number];
+            sides.push_back(t.is_chord ? PathSide{&change.drawn[t.number], t.reversed}
+                                       : PathSide{&paths_[s.path].geometry, s.reversed});
+        }
+        result.push_back(std::move(sides));
+    }
+    return result;
+}
+
+Index PatchComplex::apply(Change change)
+{
+    const auto inside = [&change](Index f) {
+        return std::find(change.faces.begin(), change.faces.end(), f) != change.faces.end();
     };
-    last_.removed_faces.clear();
-    last_.removed_paths.clear();
-    last_.first_new_face = static_cast<Index>(faces_.size());
-    last_.first_new_path = static_cast<Index>(paths_.size());
-    for (const Index f : old_faces)
+    for (const Index f : change.faces)
         for (const Side& s : faces_[f].sides)
             if (!s.reversed && inside(paths_[s.path].left) && inside(paths_[s.path].right)) {
                 paths_[s.path].alive = false;
-                last_.removed_paths.push_back(s.path);
+                paths_[s.path].geometry = {};
             }
-    for (const Index f : old_faces) {
-        last_.removed_faces.emplace_back(f, std::move(faces_[f].sides));
+    for (const Index f : change.faces) {
         faces_[f].sides.clear();
         --alive_faces_;
     }
-
-    // Each new face is traced once: from a border side, turning left at each corner.
-    const Index n = static_cast<Index>(border.size());
-    struct End {
-        Side side;    // Leaves the corner.
-        Index target; // Corner, or invalid for the centre.
-    };
-    std::vector<std::vector<End>> leaving(n + 1); // Index n: the centre.
-    const auto slot = [n](Index corner) { return corner == invalid_index ? n : corner; };
-    for (std::size_t i = 0; i < chords.size(); ++i) {
-        const Index p = add_path(std::move(drawn[i]));
-        leaving[slot(chords[i].first)].push_back({{p, false}, chords[i].second});
-        leaving[slot(chords[i].second)].push_back({{p, true}, chords[i].first});
-    }
-    std::vector<char> used(n, 0);
-    for (Index first = 0; first < n; ++first) {
-        if (used[first])
-            continue;
+    const Index first_path = static_cast<Index>(paths_.size());
+    for (SurfacePath& path : change.drawn)
+        add_path(std::move(path));
+    const Index first_face = static_cast<Index>(faces_.size());
+    for (const auto& piece : trace_faces(static_cast<Index>(change.border.size()), change.chords)) {
         std::vector<Side> sides;
-        Index from = first, at = (first + 1) % n;
-        sides.push_back(border[first]);
-        used[first] = 1;
-        while (at != first) {
-            // Leftmost way on from `at`, having come from `from` (a corner, or the centre).
-            if (at == invalid_index) {
-                // At the centre: the spoke to the next corner clockwise from where we came.
-                const End* best = nullptr;
-                Index best_offset = 0;
-                for (const End& e : leaving[n]) {
-                    const Index offset = (from + n - e.target) % n;
-                    if (offset != 0 && (!best || offset < best_offset))
-                        best = &e, best_offset = offset;
-                }
-                assert(best);
-                sides.push_back(best->side);
-                from = invalid_index;
-                at = best->target;
-                continue;
-            }
-            const End* best = nullptr;
-            Index best_offset = 0;
-            for (const End& e : leaving[at]) {
-                if (e.target == from)
-                    continue;
-                // The centre is reached whenever there is a spoke: spokes exclude chords here.
-                const Index offset = e.target == invalid_index ? n : (e.target + n - at) % n;
-                const Index limit = from == invalid_index ? n : (from + n - at) % n;
-                if (from == invalid_index && e.target == invalid_index)
-                    continue;
-                if (e.target != invalid_index && offset > limit)
-                    continue;
-                if (!best || offset > best_offset)
-                    best = &e, best_offset = offset;
-            }
-            if (best) {
-                sides.push_back(best->side);
-                from = at;
-                at = best->target;
-            } else {
-                sides.push_back(border[at]);
-                used[at] = 1;
-                from = at;
-                at = (at + 1) % n;
-            }
-        }
+        for (const TracedSide& t : piece)
+            sides.push_back(t.is_chord ? Side{first_path + t.number, t.reversed}
+                                       : change.border[t.number]);
         add_face(std::move(sides));
     }
-}
-
-void PatchComplex::undo()
-{
-    alive_faces_ -= new_face_count();
-    faces_.resize(last_.first_new_face);
-    paths_.resize(last_.first_new_path);
-    for (const Index p : last_.removed_paths)
-        paths_[p].alive = true;
-    for (auto& [f, sides] : last_.removed_faces) {
-        for (const Side& s : sides)
-            (s.reversed ? paths_[s.path].right : paths_[s.path].left) = f;
-        faces_[f].sides = std::move(sides);
-        ++alive_faces_;
-    }
+    return first_face;
 }
 
 void PatchComplex::compact()
@@ -271,10 +237,10 @@ void PatchComplex::compact()
     for (Face& f : faces)
         for (Side& s : f.sides)
             s.path = path_number[s.path];
-    for (Path& p : paths) {
-        p.left = face_number[p.left];
-        p.right = face_number[p.right];
-    }
+    for (Path& p : paths)
+        for (Index* f : {&p.left, &p.right})
+            if (*f != invalid_index)
+                *f = face_number[*f];
     paths_ = std::move(paths);
     faces_ = std::move(faces);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "layout/trace_faces.h"
 #include "maps/retile.h"
 
 #include <optional>
@@ -9,10 +10,11 @@
 
 namespace bot2nurbs {
 
-//! A division of a closed mesh into disks by non-crossing paths: K_tri while all faces have three
-//! sides, K once all have four. Changed only by exchanging paths inside a disk, which either
-//! succeeds or leaves everything as it was, so that every state is a valid complex with its exact
-//! map to the mesh.
+//! A division of a mesh into disks by non-crossing paths: K_tri while all faces have three sides, K
+//! once all have four. The boundary of an open mesh consists of paths, each with one face. Changed
+//! only by exchanging paths inside a disk: a change is planned, which either succeeds or not and
+//! leaves everything as it is, and then applied, so that every state is a valid complex with its
+//! exact map to the mesh.
 class PatchComplex {
 public:
     //! A side of a face: a path, traversed with the face to the left.
@@ -32,11 +34,21 @@ public:
         SurfacePath geometry;                              //!< Ends are mesh vertices.
         Index left = invalid_index, right = invalid_index; //!< Faces when walked forward.
         bool alive = false;
+        char mark = 0; //!< Other than 0: part of a curve of that kind (mark_of); stays as it is.
     };
 
-    PatchComplex(const ManifoldMesh& mesh) : builder_(mesh) {}
+    //! An exchange of the paths inside a disk, worked out but not done. Stays good until one of
+    //! its faces goes.
+    struct Change {
+        std::vector<Index> faces;       //!< Those that go: together the disk.
+        std::vector<Side> border;       //!< Outer sides of the disk, counter-clockwise.
+        std::vector<Chord> chords;      //!< The new paths inside, as in retile().
+        std::vector<SurfacePath> drawn; //!< Their geometry.
+    };
 
-    const ManifoldMesh& mesh() const { return builder_.mesh(); }
+    explicit PatchComplex(const ManifoldMesh& mesh) : mesh_(&mesh) {}
+
+    const ManifoldMesh& mesh() const { return *mesh_; }
     const std::vector<Face>& faces() const { return faces_; }
     const std::vector<Path>& paths() const { return paths_; }
     Index face_count() const { return alive_faces_; }
@@ -51,67 +63,62 @@ public:
         return s.reversed ? g.b : g.a;
     }
     Index end(const Side& s) const { return start({s.path, !s.reversed}); }
+    //! The face to the left of a side; invalid_index where the mesh ends.
     Index face_at(const Side& s) const
     {
         return s.reversed ? paths_[s.path].right : paths_[s.path].left;
     }
+    bool is_boundary(Index path) const
+    {
+        return paths_[path].left == invalid_index || paths_[path].right == invalid_index;
+    }
+    bool is_fixed(Index path) const { return paths_[path].mark != 0 || is_boundary(path); }
+    //! Whether a fixed path ends at the start of s.
+    bool is_fixed_vertex(const Side& s) const;
+    void mark(Index path, char mark) { paths_[path].mark = mark; }
+    static Side opposite(const Side& s) { return {s.path, !s.reversed}; }
     //! Position of a side in its face.
     Index position(const Side& s) const;
     //! The side after or before s in its face.
     Side next(const Side& s) const;
     Side previous(const Side& s) const;
-    //! Sides that start at the start of s, counter-clockwise, s first.
+    //! Sides that start at the start of s, counter-clockwise: s first, or at the boundary the one
+    //! with no face to its right first and the one with no face to its left last.
     std::vector<Side> star(const Side& s) const;
+    //! The faces at the start of s, in the order of its star.
+    std::vector<Index> faces_around(const Side& s) const;
     std::vector<Index> corners(Index face) const;
-
-    //! Replaces a set of faces that form a disk. `border` lists the disk's outer sides
-    //! counter-clockwise, `inner` the paths inside that go, `chords` the new paths as in retile().
-    //! The new faces are the last ones of faces().
-    //! \return false when the disk cannot be mapped; nothing is changed then.
-    bool replace(const std::vector<Index>& old_faces, const std::vector<Side>& border,
-                 const std::vector<std::pair<Index, Index>>& chords);
-    //! The same in a disk that was mapped before.
-    bool replace(const std::vector<Index>& old_faces, const std::vector<Side>& border,
-                 const std::vector<std::pair<Index, Index>>& chords, const MappedDisk& disk,
-                 Index center = invalid_index);
-    //! Number of faces the last replace() made.
-    Index new_face_count() const
-    {
-        return static_cast<Index>(faces_.size()) - last_.first_new_face;
-    }
-    //! Takes the last replace() back. At most once after each.
-    void undo();
+    //! One side that starts at each vertex, in order of the mesh vertices.
+    std::vector<Side> vertex_sides() const;
+    std::vector<PathSide> geometry(const std::vector<Side>& sides) const;
 
     //! The border of a set of faces, counter-clockwise, when they form a disk with distinct
     //! corners.
     std::optional<std::vector<Side>> border(const std::vector<Index>& faces) const;
 
-    std::optional<Overlay> overlay(Index face);
-    //! The overlay of a disk, derived by a builder of the caller's own: safe from several threads.
-    std::optional<Overlay> overlay(const std::vector<Side>& border, OverlayBuilder& builder) const;
-    std::optional<MappedDisk> mapped(const std::vector<Side>& border);
+    //! Plans new paths in a disk made of whole faces. `border` lists its outer sides
+    //! counter-clockwise; `chords`, `disk` and `center` are those of retile().
+    //! Empty when the paths do not fit.
+    std::optional<Change> plan(std::vector<Index> faces, std::vector<Side> border,
+                               std::vector<Chord> chords, const MappedDisk& disk,
+                               Index center = invalid_index) const;
+    //! The same, mapping the disk first (unless there are no chords).
+    std::optional<Change> plan(std::vector<Index> faces, std::vector<Side> border,
+                               std::vector<Chord> chords, OverlayBuilder& builder) const;
+    //! The borders of the faces that a change makes. \pre the change outlives the result.
+    std::vector<std::vector<PathSide>> faces_after(const Change& change) const;
+    //! Does a change. Faces and paths that go keep their numbers, as dead ones.
+    //! \return the number of the first new face; the others follow.
+    Index apply(Change change);
 
     //! Drops dead faces and paths and numbers the rest anew, in order.
     void compact();
 
 private:
-    //! What the last replace() did.
-    struct Change {
-        std::vector<std::pair<Index, std::vector<Side>>> removed_faces;
-        std::vector<Index> removed_paths;
-        Index first_new_face = 0, first_new_path = 0;
-    };
-
-    std::vector<PathSide> geometry(const std::vector<Side>& sides) const;
-    void exchange(const std::vector<Index>& old_faces, const std::vector<Side>& border,
-                  const std::vector<std::pair<Index, Index>>& chords,
-                  std::vector<SurfacePath> drawn);
-
-    OverlayBuilder builder_;
+    const ManifoldMesh* mesh_;
     std::vector<Face> faces_;
     std::vector<Path> paths_;
     Index alive_faces_ = 0;
-    Change last_;
 };
 
 } // namespace bot2nurbs

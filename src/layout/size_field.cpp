@@ -33,6 +33,17 @@ void smooth(const ManifoldMesh& mesh, const std::vector<double>& area, std::vect
 
 } // namespace
 
+double scaled_area(const ManifoldMesh& mesh, const std::vector<double>& density)
+{
+    double area = 0.0;
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        const auto& t = mesh.triangle(f);
+        const double d = (density[t[0]] + density[t[1]] + density[t[2]]) / 3.0;
+        area += 0.5 * norm(mesh.area_vector(f)) * d * d;
+    }
+    return area;
+}
+
 SizeField measure_size_field(const ManifoldMesh& mesh, double smoothing)
 {
     const Index n = mesh.vertex_count();

@@ -15,6 +15,9 @@ struct SizeField {
     double bending = 0.0;
 };
 
+//! Area of a mesh in the metric scaled by a density per vertex.
+double scaled_area(const ManifoldMesh& mesh, const std::vector<double>& density);
+
 //! Curvature from vertex normals, smoothed over the length `smoothing` so that it follows the shape
 //! and not the noise of its sampling. Cost O(n).
 SizeField measure_size_field(const ManifoldMesh& mesh, double smoothing);

@@ -16,7 +16,7 @@ class Cutter {
 public:
     Cutter(PatchComplex& triangles, const ManifoldMesh& source, const CarrierMesh& carrier)
         : triangles_(triangles), source_(source), carrier_(carrier),
-          vertex_source_(carrier.vertex_source)
+          vertex_source_(carrier.vertex_source), builder_(triangles.mesh())
     {
         // Carrier vertices keep their numbers; crossings follow, path by path.
         chain_.resize(triangles.paths().size());
@@ -34,7 +34,8 @@ public:
     // Adds the pieces of a face; its centre becomes a vertex.
     Status add_face(Index f)
     {
-        std::optional<Overlay> overlay = triangles_.overlay(f);
+        const std::optional<Overlay> overlay =
+            builder_.disk(triangles_.geometry(triangles_.faces()[f].sides));
         const auto map = overlay ? map_to_polygon(*overlay, regular_polygon(3)) : std::nullopt;
         if (!map)
             return Error{ErrorCode::layout_failed,
@@ -151,6 +152,8 @@ public:
             const std::size_t middle = middle_of(cut, chain_[p]);
             half[p] = {quads.add_path(piece(chain_[p], 0, middle)),
                        quads.add_path(piece(chain_[p], middle, chain_[p].size() - 1))};
+            for (const Index h : half[p])
+                quads.mark(h, triangles_.paths()[p].mark);
         }
         std::vector<Index> six;
         for (Index f = 0; f < triangles_.faces().size(); ++f) {
@@ -163,16 +166,20 @@ public:
             }
             six.push_back(quads.add_face(std::move(sides)));
         }
+        OverlayBuilder builder(cut);
         const Index none = invalid_index;
         for (std::size_t i = 0; i < six.size(); ++i) {
             const std::vector<Side> border = quads.faces()[six[i]].sides;
-            const auto disk = quads.mapped(border);
-            if (!disk || !quads.replace({six[i]}, border, {{1, none}, {3, none}, {5, none}}, *disk,
-                                        center_[i]))
+            const auto disk = map_disk(builder, quads.geometry(border));
+            auto change = disk ? quads.plan({six[i]}, border, {{1, none}, {3, none}, {5, none}},
+                                            *disk, center_[i])
+                               : std::nullopt;
+            if (!change)
                 return Error{ErrorCode::layout_failed,
                              "face " + std::to_string(i) +
                                  " of the base complex cannot be split in three quads",
                              static_cast<Index>(i)};
+            quads.apply(std::move(*change));
         }
         quads.compact();
         return result;
@@ -239,6 +246,7 @@ private:
     std::vector<Index> face_source_;
     std::vector<std::vector<Index>> chain_; // Per path: its vertices, both ends included.
     std::vector<Index> center_;             // Per alive face.
+    OverlayBuilder builder_;
 };
 
 } // namespace

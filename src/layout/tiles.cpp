@@ -36,8 +36,11 @@ double unfolded_distance(double vw, double uv, double uw, double dv, double dw)
 
 Tiles::Tiles(const ManifoldMesh& mesh, std::vector<double> density)
     : mesh_(mesh), density_(std::move(density)), area_(mesh.vertex_count(), 0.0),
-      label_(mesh.vertex_count(), invalid_index), distance_(mesh.vertex_count(), infinity)
+      on_boundary_(mesh.vertex_count(), 0), label_(mesh.vertex_count(), invalid_index),
+      distance_(mesh.vertex_count(), infinity)
 {
+    for (Index v = 0; v < mesh.vertex_count(); ++v)
+        on_boundary_[v] = mesh.is_boundary_vertex(v);
     for (Index f = 0; f < mesh.face_count(); ++f) {
         const double third = norm(mesh.area_vector(f)) / 6.0;
         for (const Index v : mesh.triangle(f))
@@ -45,14 +48,14 @@ Tiles::Tiles(const ManifoldMesh& mesh, std::vector<double> density)
     }
 }
 
-void Tiles::propagate(const std::vector<Index>& seeds)
+void Tiles::propagate(const std::vector<Index>& seeds, bool along_boundary)
 {
     using Entry = std::tuple<double, Index, Index>; // Distance, label, vertex: ties in this order.
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     for (const Index s : seeds)
-        queue.emplace(0.0, label_[s], s);
+        queue.emplace(distance_[s], label_[s], s);
     const auto improve = [&](Index u, double d, Index label) {
-        if (d < distance_[u]) {
+        if (d < distance_[u] && static_cast<bool>(on_boundary_[u]) == along_boundary) {
             distance_[u] = d;
             label_[u] = label;
             queue.emplace(d, label, u);
@@ -70,16 +73,24 @@ void Tiles::propagate(const std::vector<Index>& seeds)
             const double scale = (density_[v] + density_[p] + density_[q]) / 3.0;
             const double vp = scale * norm(mesh_.position(p) - mesh_.position(v));
             const double vq = scale * norm(mesh_.position(q) - mesh_.position(v));
-            improve(p, d + vp, label);
-            improve(q, d + vq, label);
-            const double pq = scale * norm(mesh_.position(p) - mesh_.position(q));
-            // Never nearer than the vertex just done: rounding on needles must not start it again.
-            if (label_[q] == label && distance_[q] <= d && vq > 0.0)
-                improve(p, std::max(d, unfolded_distance(vq, vp, pq, d, distance_[q])), label);
-            if (label_[p] == label && distance_[p] <= d && vp > 0.0)
-                improve(q, std::max(d, unfolded_distance(vp, vq, pq, d, distance_[p])), label);
+            if (along_boundary) {
+                if (mesh_.twin(h) == invalid_index)
+                    improve(p, d + vp, label);
+                if (mesh_.twin(mesh_.prev(h)) == invalid_index)
+                    improve(q, d + vq, label);
+            } else {
+                improve(p, d + vp, label);
+                improve(q, d + vq, label);
+                const double pq = scale * norm(mesh_.position(p) - mesh_.position(q));
+                // Never nearer than the vertex just done: rounding on needles must not start it
+                // again.
+                if (label_[q] == label && distance_[q] <= d && vq > 0.0)
+                    improve(p, std::max(d, unfolded_distance(vq, vp, pq, d, distance_[q])), label);
+                if (label_[p] == label && distance_[p] <= d && vp > 0.0)
+                    improve(q, std::max(d, unfolded_distance(vp, vq, pq, d, distance_[p])), label);
+            }
             h = mesh_.twin(mesh_.prev(h));
-        } while (h != first);
+        } while (h != first && h != invalid_index);
     }
 }
 
@@ -93,22 +104,33 @@ void Tiles::grow(std::vector<Index> sites)
 
 void Tiles::add(const std::vector<Index>& sites)
 {
+    std::vector<Index> seeds(sites), on_boundary;
     for (const Index s : sites) {
         label_[s] = static_cast<Index>(sites_.size());
         distance_[s] = 0.0;
         sites_.push_back(s);
+        if (on_boundary_[s])
+            on_boundary.push_back(s);
     }
-    propagate(sites);
+    if (!on_boundary.empty()) {
+        const std::vector<Index> before = label_;
+        propagate(on_boundary, true);
+        for (Index v = 0; v < label_.size(); ++v)
+            if (label_[v] != before[v])
+                seeds.push_back(v);
+    }
+    propagate(seeds, false);
 }
 
 void Tiles::add_farthest(Index count)
 {
     while (sites_.size() < count) {
-        Index farthest = 0;
-        for (Index v = 1; v < mesh_.vertex_count(); ++v)
-            if (distance_[v] > distance_[farthest])
+        Index farthest = invalid_index;
+        for (Index v = 0; v < mesh_.vertex_count(); ++v)
+            if (!on_boundary_[v] &&
+                (farthest == invalid_index || distance_[v] > distance_[farthest]))
                 farthest = v;
-        if (distance_[farthest] <= 0.0)
+        if (farthest == invalid_index || distance_[farthest] <= 0.0)
             return;
         add({farthest});
     }
@@ -130,6 +152,8 @@ void Tiles::relax()
         centroid[i] = weight[i] > 0.0 ? centroid[i] / weight[i] : mesh_.position(sites_[i]);
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {
         const Index i = label_[v];
+        if (on_boundary_[sites_[i]])
+            continue;
         const double d = norm_squared(mesh_.position(v) - centroid[i]);
         if (d < best_distance[i]) {
             best_distance[i] = d;
@@ -152,82 +176,109 @@ void Tiles::list_members(std::vector<Index>& offset, std::vector<Index>& members
         members[at[label_[v]]++] = v;
 }
 
+// Of two candidates the one farther from its site; sites lose (by what they are, not by their
+// distance, which a vertex at the end of an edge without length shares), ties to the smaller index.
+Index Tiles::farther(Index a, Index b) const
+{
+    if (b == invalid_index || sites_[label_[b]] == b)
+        return a;
+    if (a == invalid_index || sites_[label_[a]] == a)
+        return b;
+    return distance_[b] > distance_[a] || (distance_[b] == distance_[a] && b < a) ? b : a;
+}
+
+Tiles::Outline Tiles::outline(Index tile, const Index* members, const Index* end) const
+{
+    Outline o;
+    // Six times the Euler characteristic of the members' own complex, whose neighbourhood the tile
+    // is.
+    std::int64_t euler6 = 0;
+    Index start = invalid_index;
+    for (const Index* m = members; m != end; ++m) {
+        const Index v = *m;
+        o.farthest_member = farther(o.farthest_member, v);
+        euler6 += 6;
+        const Index first = mesh_.halfedge_at(v);
+        Index h = first;
+        do {
+            const Index p = mesh_.to(h), q = mesh_.from(mesh_.prev(h));
+            if (label_[p] == tile) {
+                euler6 -= 3;
+                if (label_[q] == tile)
+                    euler6 += 2;
+            } else if (mesh_.twin(h) == invalid_index) {
+                // Where the tile's part of the boundary ends, its cuts begin.
+                start = h;
+                o.open = true;
+            } else if (start == invalid_index) {
+                start = h;
+            }
+            const Index last = mesh_.prev(h);
+            h = mesh_.twin(last);
+            if (h == invalid_index && label_[q] == tile)
+                euler6 -= 3;
+        } while (h != first && h != invalid_index);
+    }
+    o.disk = euler6 == 6 && start != invalid_index;
+    if (!o.disk)
+        return o;
+    // Once around the tile, or from boundary to boundary: runs of neighbours, each with its
+    // farthest vertex on either side.
+    Index h = start, u = mesh_.from(h), w = mesh_.to(h);
+    for (;;) {
+        if (o.neighbours.empty() || o.neighbours.back() != label_[w]) {
+            o.neighbours.push_back(label_[w]);
+            o.farthest.push_back(invalid_index);
+        }
+        o.farthest.back() = farther(farther(o.farthest.back(), u), w);
+        const Index third = mesh_.from(mesh_.prev(h));
+        const bool inside = label_[third] == tile;
+        (inside ? u : w) = third;
+        h = mesh_.twin(inside ? mesh_.next(h) : mesh_.prev(h));
+        if (h == invalid_index) {
+            if (o.neighbours.back() != label_[w]) {
+                o.neighbours.push_back(label_[w]);
+                o.farthest.push_back(invalid_index);
+            }
+            o.farthest.back() = farther(farther(o.farthest.back(), u), w);
+            return o;
+        }
+        if (h == start)
+            break;
+    }
+    if (o.neighbours.size() > 1 && o.neighbours.front() == o.neighbours.back()) {
+        o.farthest.front() = farther(o.farthest.front(), o.farthest.back());
+        o.neighbours.pop_back();
+        o.farthest.pop_back();
+    }
+    return o;
+}
+
 std::vector<Index> Tiles::violations() const
 {
     std::vector<Index> offset, members, result;
     list_members(offset, members);
-    const auto farther = [this](Index a, Index b) {
-        // Of two candidates the one farther from its site; sites lose (by what they are, not by
-        // their distance, which a vertex at the end of an edge without length shares), ties to the
-        // smaller index.
-        if (b == invalid_index || sites_[label_[b]] == b)
-            return a;
-        if (a == invalid_index || sites_[label_[a]] == a)
-            return b;
-        return distance_[b] > distance_[a] || (distance_[b] == distance_[a] && b < a) ? b : a;
-    };
-    std::vector<Index> runs, run_candidate;
+    std::vector<std::pair<Index, std::size_t>> order;
     for (Index i = 0; i < sites_.size(); ++i) {
-        Index farthest = invalid_index, around = invalid_index, start = invalid_index;
-        // Twice the Euler characteristic of the members' own complex, whose neighbourhood the tile
-        // is.
-        std::int64_t euler6 = 0;
-        for (Index m = offset[i]; m < offset[i + 1]; ++m) {
-            const Index v = members[m];
-            farthest = farther(farthest, v);
-            euler6 += 6;
-            const Index first = mesh_.halfedge_at(v);
-            Index h = first;
-            do {
-                const Index p = mesh_.to(h), q = mesh_.from(mesh_.prev(h));
-                if (label_[p] == i) {
-                    euler6 -= 3;
-                    if (label_[q] == i)
-                        euler6 += 2;
-                } else if (start == invalid_index) {
-                    start = h;
-                }
-                h = mesh_.twin(mesh_.prev(h));
-            } while (h != first);
-        }
-        if (euler6 != 6 || start == invalid_index) {
-            result.push_back(farthest);
-            continue;
-        }
-        // Once around the tile: runs of neighbours, each with its farthest vertex on either side.
-        runs.clear();
-        run_candidate.clear();
-        Index h = start;
-        do {
-            const Index u = mesh_.from(h), w = mesh_.to(h);
-            if (runs.empty() || runs.back() != label_[w]) {
-                runs.push_back(label_[w]);
-                run_candidate.push_back(invalid_index);
-            }
-            run_candidate.back() = farther(farther(run_candidate.back(), u), w);
-            around = farther(farther(around, u), w);
-            const Index third = mesh_.from(mesh_.prev(h));
-            h = label_[third] == i ? mesh_.twin(mesh_.next(h)) : mesh_.twin(mesh_.prev(h));
-        } while (h != start);
-        if (runs.size() > 1 && runs.front() == runs.back()) {
-            run_candidate.front() = farther(run_candidate.front(), run_candidate.back());
-            runs.pop_back();
-            run_candidate.pop_back();
-        }
-        if (runs.size() < 3) {
-            result.push_back(farther(farthest, around));
-            continue;
-        }
-        std::vector<std::pair<Index, std::size_t>> order;
-        for (std::size_t r = 0; r < runs.size(); ++r)
-            order.emplace_back(runs[r], r);
-        std::sort(order.begin(), order.end());
+        const Outline o = outline(i, members.data() + offset[i], members.data() + offset[i + 1]);
         Index candidate = invalid_index;
-        for (std::size_t r = 0; r + 1 < order.size(); ++r)
-            if (order[r].first == order[r + 1].first) {
-                candidate = farther(candidate, run_candidate[order[r].second]);
-                candidate = farther(candidate, run_candidate[order[r + 1].second]);
-            }
+        if (!o.disk) {
+            candidate = o.farthest_member;
+        } else if (o.neighbours.size() < (o.open ? 2 : 3)) {
+            candidate = o.farthest_member;
+            for (const Index v : o.farthest)
+                candidate = farther(candidate, v);
+        } else {
+            order.clear();
+            for (std::size_t r = 0; r < o.neighbours.size(); ++r)
+                order.emplace_back(o.neighbours[r], r);
+            std::sort(order.begin(), order.end());
+            for (std::size_t r = 0; r + 1 < order.size(); ++r)
+                if (order[r].first == order[r + 1].first) {
+                    candidate = farther(candidate, o.farthest[order[r].second]);
+                    candidate = farther(candidate, o.farthest[order[r + 1].second]);
+                }
+        }
         if (candidate != invalid_index)
             result.push_back(candidate);
     }

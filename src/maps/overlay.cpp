@@ -395,80 +395,142 @@ std::optional<Overlay> OverlayBuilder::disk(const std::vector<PathSide>& sides)
     return overlay;
 }
 
-std::optional<Overlay> OverlayBuilder::tile(const std::vector<Index>& label,
-                                            const std::vector<Index>& members,
-                                            std::vector<Index>& side_label)
+// Once around the tile, which stays to the left: from the first junction, or at the boundary from
+// the site. Empty where the tile has no simple outline.
+std::vector<OverlayBuilder::Station> OverlayBuilder::walk_around(const std::vector<Index>& label,
+                                                                 const std::vector<Index>& members,
+                                                                 Index site) const
 {
-    next_stamp();
-    side_label.clear();
     const Index own = label[members.front()];
-    // Mixed halfedges: from the tile to another label.
+    // Mixed halfedges run from the tile to another label; the walk must meet each.
     Index start = invalid_index, mixed = 0;
+    bool open = false;
     for (const Index u : members) {
         Index h = mesh_.halfedge_at(u);
         const Index first = h;
         do {
             if (label[mesh_.to(h)] != own) {
                 ++mixed;
-                start = start == invalid_index ? h : start;
+                const bool begins = mesh_.twin(h) == invalid_index;
+                if (begins && open)
+                    return {}; // Two parts of the boundary.
+                if (begins || start == invalid_index)
+                    start = h;
+                open = open || begins;
             }
             h = mesh_.twin(mesh_.prev(h));
-        } while (h != first);
+        } while (h != first && h != invalid_index);
     }
     if (start == invalid_index)
-        return std::nullopt;
+        return {};
 
-    // Once around the tile, which stays to the left: midpoints of mixed edges, and junctions.
-    struct Station {
-        Index halfedge; // Of a midpoint; invalid for a junction.
-        Index face;     // Of a junction.
-    };
     std::vector<Station> stations;
-    Index walked = 0, first_junction = invalid_index;
-    Index h = start;
+    const auto add_middle = [&](Index halfedge, Index across) {
+        Station s;
+        s.halfedge = halfedge;
+        s.across = across;
+        stations.push_back(s);
+    };
+    if (open) {
+        // From the site along the boundary to where the cuts begin.
+        Station s;
+        s.vertex = site;
+        s.corner = true;
+        stations.push_back(s);
+        s.corner = false;
+        for (Index v = site; v != mesh_.from(start); stations.push_back(s)) {
+            v = mesh_.to(mesh_.halfedge_at(v));
+            if (label[v] != own)
+                return {}; // The site is not on this part of the boundary.
+            s.vertex = v;
+        }
+    }
+    const std::size_t first_middle = stations.size();
+    std::size_t first_junction = 0;
+    Index walked = 0, h = start;
     do {
-        stations.push_back({h, invalid_index});
+        add_middle(h, label[mesh_.to(h)]);
         ++walked;
         const Index third = mesh_.from(mesh_.prev(h));
-        if (label[third] == own) {
-            h = mesh_.twin(mesh_.next(h));
-        } else {
-            if (label[third] != label[mesh_.to(h)]) {
-                if (first_junction == invalid_index)
-                    first_junction = static_cast<Index>(stations.size());
-                stations.push_back({invalid_index, mesh_.face(h)});
-            }
-            h = mesh_.twin(mesh_.prev(h));
+        const bool inside = label[third] == own;
+        if (!inside && label[third] != label[mesh_.to(h)]) {
+            if (first_junction == 0)
+                first_junction = stations.size();
+            Station s;
+            s.face = mesh_.face(h);
+            s.corner = true;
+            stations.push_back(s);
+        }
+        const Index leaving = inside ? mesh_.next(h) : mesh_.prev(h);
+        h = mesh_.twin(leaving);
+        if (h == invalid_index) {
+            add_middle(leaving, inside ? label[mesh_.from(leaving)] : label[third]);
+            h = leaving;
+            break;
         }
     } while (h != start && walked <= mixed);
-    if (walked != mixed || first_junction == invalid_index)
+    if (walked != mixed || first_junction == 0 || open != (mesh_.twin(h) == invalid_index))
+        return {};
+    if (!open) {
+        std::rotate(stations.begin(),
+                    stations.begin() + static_cast<std::ptrdiff_t>(first_junction), stations.end());
+        return stations;
+    }
+    stations[first_middle].corner = true;
+    stations.back().corner = true;
+    stations.back().across = invalid_index;
+    // Back along the boundary.
+    Index v = label[mesh_.to(h)] == own ? mesh_.to(h) : mesh_.from(h);
+    for (; v != site; v = mesh_.to(mesh_.halfedge_at(v))) {
+        if (label[v] != own)
+            return {};
+        Station s;
+        s.vertex = v;
+        stations.push_back(s);
+    }
+    return stations;
+}
+
+std::optional<Overlay> OverlayBuilder::tile(const std::vector<Index>& label,
+                                            const std::vector<Index>& members, Index site,
+                                            std::vector<Index>& side_label)
+{
+    next_stamp();
+    side_label.clear();
+    const Index own = label[members.front()];
+    const std::vector<Station> stations = walk_around(label, members, site);
+    if (stations.empty())
         return std::nullopt;
-    std::rotate(stations.begin(), stations.begin() + first_junction, stations.end());
 
     Overlay overlay;
     std::vector<std::pair<Index, Index>> junctions; // Face, overlay vertex.
     for (const Station& s : stations) {
         const Index id = static_cast<Index>(overlay.vertices.size());
+        if (s.corner) {
+            overlay.corners.push_back(id);
+            side_label.push_back(invalid_index);
+        }
+        if (s.across != invalid_index)
+            side_label.back() = s.across;
+        if (s.vertex != invalid_index) {
+            local_vertex(overlay, s.vertex);
+            continue;
+        }
         Overlay::Vertex v;
         if (s.halfedge == invalid_index) {
             v.face = s.face;
             v.bary = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
             v.position = mesh_.at({s.face, v.bary});
-            overlay.corners.push_back(id);
             junctions.emplace_back(s.face, id);
         } else {
             v.edge = mesh_.edge(s.halfedge);
             v.t = 0.5;
             v.position = edge_point(mesh_, v.edge, v.t);
             edge_points_.push_back({v.edge, v.t, id});
-            if (side_label.size() < overlay.corners.size())
-                side_label.push_back(label[mesh_.to(s.halfedge)]);
         }
         overlay.vertices.push_back(v);
     }
     overlay.boundary_count = static_cast<Index>(overlay.vertices.size());
-    if (side_label.size() != overlay.corners.size())
-        return std::nullopt;
     const Index side_count = overlay.side_count();
     for (Index s = 0, i = 0; s < side_count; ++s) {
         const Index end = s + 1 < side_count ? overlay.corners[s + 1] : overlay.boundary_count;
@@ -513,7 +575,7 @@ std::optional<Overlay> OverlayBuilder::tile(const std::vector<Index>& label,
                 add_polygon(overlay, f, polygon);
             }
             g = mesh_.twin(mesh_.prev(g));
-        } while (g != first);
+        } while (g != first && g != invalid_index);
     }
     if (!is_disk(overlay))
         return std::nullopt;

@@ -50,12 +50,14 @@ public:
     //! region is not a disk.
     std::optional<Overlay> disk(const std::vector<PathSide>& sides);
 
-    //! The overlay of the tile of the vertices labelled `label`: mixed edges are cut in the middle,
-    //! faces with three labels in their centroid; those junctions are the corners.
-    //! `seed` is a vertex of the tile. `side_label` receives the label across each side.
-    //! Empty when the tile is not a disk or has no junction.
+    //! The overlay of the tile of one label, whose vertices are `members`: mixed edges are cut in
+    //! the middle, faces with three labels in their centroid; those junctions are the corners. A
+    //! tile at the boundary must have `site`, a member there, and has it as its first corner; the
+    //! ends of its part of the boundary are corners too. `side_label` receives the label across
+    //! each side, invalid_index at the boundary. Empty when the tile is not a disk or has no
+    //! junction.
     std::optional<Overlay> tile(const std::vector<Index>& label, const std::vector<Index>& members,
-                                std::vector<Index>& side_label);
+                                Index site, std::vector<Index>& side_label);
 
     const ManifoldMesh& mesh() const { return mesh_; }
 
@@ -68,6 +70,16 @@ private:
     struct Chord {
         Index face, from, to;
     };
+    // A point of the border of a tile: a mesh vertex, the middle of an edge, or a junction.
+    struct Station {
+        Index vertex = invalid_index;
+        Index halfedge = invalid_index;
+        Index face = invalid_index;
+        bool corner = false;
+        Index across = invalid_index; //!< Label across the side that follows, where known.
+    };
+    std::vector<Station> walk_around(const std::vector<Index>& label,
+                                     const std::vector<Index>& members, Index site) const;
 
     void next_stamp();
     Index local_vertex(Overlay& overlay, Index mesh_vertex);

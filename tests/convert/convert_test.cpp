@@ -178,10 +178,30 @@ TEST_F(ConvertTest, check_domain_accepts_what_convert_accepts)
     EXPECT_GT(checked->components[0].charts.min_jacobian, 0.0);
 }
 
-TEST_F(ConvertTest, an_open_mesh_is_refused_with_its_loops_and_a_vertex)
+TEST_F(ConvertTest, an_open_mesh_becomes_an_open_surface_with_a_warning_unless_it_was_expected)
+{
+    for (const Closure closure : {Closure::as_input, Closure::open}) {
+        ConvertOptions options = options_for({open_cylinder()});
+        options.domain_in.reset();
+        options.outputs = {path("a.3dm"), path("a.step")};
+        options.closure = closure;
+        Context context;
+        const Result<ConvertReport> report = convert(options, context);
+        ASSERT_TRUE(report) << report.error().message;
+        EXPECT_TRUE(report->valid());
+        EXPECT_FALSE(report->solid());
+        EXPECT_GE(report->components[0].brep.boundary_edges, 8u);
+        const bool warned = std::any_of(report->warnings.begin(), report->warnings.end(),
+                                        [](const Warning& w) { return w.code == "open"; });
+        EXPECT_EQ(warned, closure == Closure::as_input);
+    }
+}
+
+TEST_F(ConvertTest, an_open_mesh_is_refused_as_a_solid_with_its_loops)
 {
     ConvertOptions options = options_for({open_cylinder()});
     options.outputs = {path("a.3dm")};
+    options.closure = Closure::solid;
     Context context;
     const Result<ConvertReport> report = convert(options, context);
     ASSERT_FALSE(report);

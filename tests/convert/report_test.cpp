@@ -18,12 +18,14 @@ ConvertReport example_report()
     report.input_faces = 16;
     report.units = "mm";
     report.diagonal = 4.0;
-    report.sharp_edges = 3;
     for (const Index i : {0u, 1u}) {
         ComponentOutcome c;
         c.genus = static_cast<int>(i);
         c.diagonal = 2.0;
         c.domain = {"eck", "0123456789abcdef", 6, 12, 8, 8, 3 + i, {0, 0, 0, 8}};
+        c.features.detected_edges = 7;
+        c.features.kept_edges = 5 + i;
+        c.features.smoothed = {{i, i + 1}};
         c.fit.rounds.resize(5 + i);
         c.fit.unknowns = 100;
         c.fit.condition = 10.0 + i;
@@ -60,7 +62,10 @@ TEST(Report, has_the_fixed_names_and_sums_over_components)
     EXPECT_EQ(j["brep"]["valid"], true);
     EXPECT_EQ(j["brep"]["solid"], true);
     EXPECT_EQ(j["continuity"]["max_g1_angle_deg"], 2e-12);
-    EXPECT_EQ(j["features"]["smoothed_edges"], 3);
+    EXPECT_EQ(j["features"]["detected_edges"], 14);
+    EXPECT_EQ(j["features"]["kept_edges"], 11);
+    EXPECT_EQ(j["features"]["smoothed_edges"], 2);
+    EXPECT_EQ(j["features"]["smoothed"], json::parse("[[0,1],[1,2]]"));
     EXPECT_EQ(j["outputs"][0]["bytes"], 1234);
     EXPECT_EQ(j["stages"][0]["peak_rss_mib"], 12.0);
     EXPECT_EQ(j["stages"][0]["cpu_seconds"], 0.75);

@@ -318,8 +318,9 @@ TEST(FitNetwork, is_cancelled_within_50_ms_and_leaves_the_samples_alone)
         std::thread canceller([&] {
             while (thread_seconds(clock) < start + after)
                 std::this_thread::sleep_for(std::chrono::milliseconds(1));
-            asked = thread_seconds(clock);
+            // Asked first, then read: this thread may be kept waiting between the two.
             context.cancel();
+            asked = thread_seconds(clock);
         });
         const auto result = fit_network(*network, samples, options, context);
         const double ended = thread_seconds(clock);

@@ -209,10 +209,35 @@ TEST(FootPoint, of_a_point_beyond_a_boundary_is_on_the_boundary)
     const SurfaceWalk walk(disk.complex, surface);
     const FootPoint side = walk.descend({0.7, -0.5, 0.1}, {3, 0.9, 0.9});
     EXPECT_LT(norm(side.surface.position - Vec3{0.7, 0.0, 0.0}), 1e-6);
-    EXPECT_TRUE(walk.on_sharp_edge(side.where));
+    EXPECT_TRUE(on_sharp_edge(disk.complex, side.where));
     const FootPoint corner = walk.descend({2.5, 2.5, 0.0}, {0, 0.1, 0.1});
     EXPECT_LT(norm(corner.surface.position - Vec3{2.0, 2.0, 0.0}), 1e-6);
-    EXPECT_FALSE(walk.on_sharp_edge(walk.descend({1.0, 1.0, 1.0}, {0, 0.1, 0.1}).where));
+    EXPECT_FALSE(on_sharp_edge(disk.complex, walk.descend({1.0, 1.0, 1.0}, {0, 0.1, 0.1}).where));
+}
+
+TEST(FootPoint, along_a_curve_stays_on_it_and_passes_smooth_vertices)
+{
+    // The rim of a 2 x 2 disk: corners at its four ends, smooth vertices in the middle of its
+    // sides.
+    const fixtures::Domain disk = fixtures::disk_grid(2, 2);
+    Target target{disk, [](const Vec3& p) { return p; }, {}, 1.0};
+    const SplineSurface surface = fitted(target);
+    const SurfaceWalk walk(disk.complex, surface);
+    const DomainPoint start = walk.descend({0.4, -1.0, 0.0}, {0, 0.5, 0.5}).where;
+    ASSERT_TRUE(on_sharp_edge(disk.complex, start));
+    for (const double x : {0.1, 0.4, 0.99, 1.01, 1.7}) {
+        const FootPoint foot = walk.descend_along_curve({x, 0.8, 0.3}, start);
+        // Above the disk, yet on its rim.
+        EXPECT_LT(norm(foot.surface.position - Vec3{x, 0.0, 0.0}), 1e-6) << x;
+        EXPECT_TRUE(on_sharp_edge(disk.complex, foot.where));
+        EXPECT_NEAR(std::abs(walk.curve_tangent(foot).x), 1.0, 1e-6);
+    }
+    // The curve ends at the corner, and what starts in a corner stays.
+    const FootPoint end = walk.descend_along_curve({3.0, 1.0, 0.0}, start);
+    EXPECT_LT(norm(end.surface.position - Vec3{2.0, 0.0, 0.0}), 1e-6);
+    EXPECT_EQ(walk.curve_tangent(end), Vec3{});
+    EXPECT_EQ(walk.descend_along_curve({0.0, 0.0, 0.0}, end.where).surface.position,
+              end.surface.position);
 }
 
 TEST(ParameterCorrection, leaves_the_wrong_sheet)
@@ -240,7 +265,7 @@ TEST(ParameterCorrection, leaves_the_wrong_sheet)
     const SurfaceWalk walk(flat.domain.complex, surface);
     ASSERT_GT(walk.descend(samples.positions[top], samples.domain[top]).distance, 0.1);
     const auto feet = correct_parameters(flat.domain.complex, surface, samples.positions,
-                                         samples.domain, Context());
+                                         samples.domain, {}, Context());
     ASSERT_EQ(feet.size(), samples.size());
     EXPECT_LT(feet[top].distance, 0.01);
 }

@@ -106,12 +106,9 @@ TEST(Layout, is_the_same_for_any_thread_count_and_run_after_run)
     }
 }
 
-TEST(Layout, refuses_open_meshes_and_zero_patches)
+TEST(Layout, refuses_zero_patches)
 {
     Context context;
-    const auto open = build_layout(open_cylinder(12, 4), {}, context);
-    ASSERT_FALSE(open.ok());
-    EXPECT_EQ(open.error().code, ErrorCode::open_mesh);
     LayoutOptions none;
     none.patches = 0;
     const auto zero = build_layout(octahedron(), none, context);

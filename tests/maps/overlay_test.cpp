@@ -134,7 +134,7 @@ TEST(Overlay, tiles_of_any_labelling_into_disks_cover_the_mesh_once)
         for (Index v = 0; v < mesh.vertex_count(); ++v)
             if (label[v] == k)
                 members.push_back(v);
-        const auto tile = builder.tile(label, members, neighbour);
+        const auto tile = builder.tile(label, members, members.front(), neighbour);
         ASSERT_TRUE(tile);
         EXPECT_EQ(neighbour.size(), tile->side_count());
         EXPECT_GE(tile->side_count(), 3u);

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "layout/valences.h"
+
+#include <cmath>
+
+namespace bot2nurbs {
+
+namespace {
+
+// What one unit of (valence - wanted)^2 costs against the energy of a patch (a square of the wanted
+// size has 1).
+constexpr double valence_weight = 0.35;
+// At the boundary, where the angle cannot be shared out differently, it costs more.
+constexpr double boundary_weight = 0.7;
+// Largest valence a change may make in K: the masks grow fast beyond. In K_tri a vertex has half as
+// many edges again.
+constexpr int max_quad_valence = 6;
+constexpr int max_triangle_valence = 9;
+// Vertices of degree two inside K, and boundary vertices whose one corner is nearly flat or more,
+// are worth this much to remove, so that it is done by whatever change distorts least, and they
+// are never made.
+constexpr double degenerate_cost = 10.0;
+// Corners wider than this many right angles count as flat.
+constexpr double flat_corner = 1.7;
+
+// Angle of the mesh at a boundary vertex.
+double boundary_angle(const ManifoldMesh& mesh, Index v)
+{
+    double sum = 0.0;
+    for (Index h = mesh.halfedge_at(v); h != invalid_index; h = mesh.twin(ManifoldMesh::prev(h))) {
+        const Vec3 p = mesh.position(mesh.to(h)) - mesh.position(v);
+        const Vec3 q = mesh.position(mesh.from(ManifoldMesh::prev(h))) - mesh.position(v);
+        sum += std::atan2(norm(cross(p, q)), dot(p, q));
+    }
+    return sum;
+}
+
+} // namespace
+
+Valences::Valences(const PatchComplex& complex, Index sides)
+    : sides_(sides), most_(sides == 3 ? max_triangle_valence : max_quad_valence),
+      count_(complex.mesh().vertex_count(), 0), angle_(complex.mesh().vertex_count(), 0.0)
+{
+    constexpr double pi = 3.14159265358979323846;
+    const double unit = sides == 3 ? pi / 3.0 : pi / 2.0;
+    for (const auto& p : complex.paths())
+        if (p.alive)
+            ++count_[p.geometry.a], ++count_[p.geometry.b];
+    for (Index v = 0; v < count_.size(); ++v)
+        if (count_[v] > 0 && complex.mesh().is_boundary_vertex(v))
+            angle_[v] = std::max(boundary_angle(complex.mesh(), v) / unit, 0.5);
+}
+
+void Valences::move(Index from, Index to)
+{
+    if (from == to)
+        return;
+    count_[to] = count_[from];
+    count_[from] = 0;
+}
+
+bool Valences::is_degenerate(Index vertex, int by) const
+{
+    const int edges = count_[vertex] + by;
+    if (is_inside(vertex))
+        return sides_ == 4 && edges == 2;
+    const double flat = sides_ == 4 ? flat_corner : 1.5 * flat_corner;
+    return count_[vertex] > 0 && angle_[vertex] > flat * (static_cast<double>(edges) - 1.0);
+}
+
+double Valences::cost(Index vertex, int edges) const
+{
+    if (is_degenerate(vertex, edges - count_[vertex]))
+        return degenerate_cost;
+    const double d = static_cast<double>(edges) - wanted(vertex);
+    return (is_inside(vertex) ? valence_weight : boundary_weight) * d * d;
+}
+
+} // namespace bot2nurbs
