@@ -130,6 +130,17 @@ std::variant<Command, int> parse_command(int argc, char** argv)
         app.add_option("--domain-out", domain_out, "Write the domain; OUTPUT may then be left out")
             ->type_name("FILE")
             ->group(domain);
+    std::string constraints, constraints_out;
+    CLI::Option* constraints_option =
+        app.add_option("--constraints", constraints,
+                       "What the automatic layout must keep to: sites, paths, features, pairings")
+            ->type_name("FILE")
+            ->group(domain);
+    CLI::Option* constraints_out_option =
+        app.add_option("--constraints-out", constraints_out,
+                       "Write the layout as constraints, to edit and give back")
+            ->type_name("FILE")
+            ->group(domain);
     CLI::Option* validate = app.add_option("--validate-domain", validated,
                                            "Check this domain against INPUT and convert nothing")
                                 ->type_name("FILE")
@@ -200,6 +211,10 @@ std::variant<Command, int> parse_command(int argc, char** argv)
         o.domain_in = domain_in;
     if (*domain_out_option)
         o.domain_out = domain_out;
+    if (*constraints_option)
+        o.constraints = constraints;
+    if (*constraints_out_option)
+        o.constraints_out = constraints_out;
     if (*tessellation_option)
         o.tessellation = tessellation;
 
@@ -210,7 +225,7 @@ std::variant<Command, int> parse_command(int argc, char** argv)
             std::fprintf(stderr, "bot2nurbs: --check and --validate-domain exclude each other\n");
             return exit_code(ErrorCode::bad_option);
         }
-        if (!o.outputs.empty() || o.domain_out || o.tessellation) {
+        if (!o.outputs.empty() || o.domain_out || o.constraints_out || o.tessellation) {
             std::fprintf(stderr, "bot2nurbs: %s writes no output file\n", name);
             return exit_code(ErrorCode::bad_option);
         }

@@ -60,6 +60,12 @@ struct ConvertOptions {
     std::optional<std::string> domain_in;
     //! Where to write the domains of all components.
     std::optional<std::string> domain_out;
+    //! Constraint file that the automatic layout keeps to; components that it does not name are
+    //! laid out freely.
+    std::optional<std::string> constraints;
+    //! Where to write the constraints that the layouts kept to and the vertices they chose, as
+    //! constraints.
+    std::optional<std::string> constraints_out;
     //! Where to write a tessellation (binary PLY) for inspection: per vertex the normal, patch,
     //! parameters, signed distance to the source, and at patch corners the valence.
     std::optional<std::string> tessellation;
@@ -83,7 +89,8 @@ struct ConvertOptions {
 //! 2. the same bytes for any thread count;
 //! 3. coordinates come out in the place and units they came in.
 //! Cancel through the context. Errors: those of the stages; open_mesh, self_intersecting (with
-//! strict), stale_domain, bad_option, cannot_write.
+//! strict), stale_domain, constraint_conflict,
+//! bad_option, cannot_write.
 Result<ConvertReport> convert(const ConvertOptions& options, Context& context);
 
 //! What the first steps of convert() say of an input.

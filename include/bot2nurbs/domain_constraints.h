@@ -79,4 +79,13 @@ std::string constraints_to_json(const DomainConstraints& constraints);
 Result<DomainConstraints> constraints_from_json(const std::string& text,
                                                 const ManifoldMesh& source);
 
+//! Of several components: a list of the same objects; of one component the object alone.
+std::string constraint_list_to_json(const std::vector<DomainConstraints>& constraints);
+
+//! Reads an object or a list of them. One result for each source, with nothing asked for where no
+//! object has its signature. Errors: as constraints_from_json; stale_domain also for an object
+//! that belongs to none of the sources.
+Result<std::vector<DomainConstraints>>
+constraint_list_from_json(const std::string& text, const std::vector<ManifoldMesh>& sources);
+
 } // namespace bot2nurbs

@@ -13,6 +13,9 @@ struct LayoutOptions {
     //! Chains of source edges that become edges of the domain: seams and creases; of kind corner,
     //! vertices where a crease or the boundary turns. The boundary itself need not be named.
     std::vector<FeaturePath> features;
+    //! What a person asks for: honoured or refused, never dropped. Where its features meet those
+    //! above, they win. Its hint of a number of patches counts where `patches` is absent.
+    DomainConstraints constraints;
     bool split_triangles = false; //!< Use the three-quads fallback in place of pairing.
     std::uint64_t seed = 0; //!< Reserved for tie-breaking experiments; results are deterministic.
 };
@@ -34,7 +37,8 @@ struct LayoutResult {
 };
 
 //! The automatic layout of one connected mesh (Eck et al. 1995, Eck and Hoppe 1996). Its boundary
-//! becomes that of the domain. Errors: bad_option, layout_failed, cancelled.
+//! becomes that of the domain. Errors: bad_option; layout_failed; constraint_conflict, naming the
+//! constraints that cannot be met together; cancelled.
 Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOptions& options,
                                   Context& context);
 

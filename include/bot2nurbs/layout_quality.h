@@ -16,8 +16,8 @@ struct Spread {
 //! How good a domain is to fit a spline on: shapes and sizes of its patches on the source, and how
 //! evenly their charts cover them.
 struct LayoutQuality {
-    //! L2 stretch of each chart, normalised: 1 for a similarity, large where much surface is squeezed
-    //! into few parameters. \cite sander_2001
+    //! L2 stretch of each chart, normalised: 1 for a similarity, large where much surface is
+    //! squeezed into few parameters. \cite sander_2001
     Spread stretch;
     //! Angle in degrees, 0 to 90, at which lines of constant u and v cross: mean over the area of
     //! each chart.

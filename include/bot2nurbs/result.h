@@ -18,22 +18,23 @@ inline constexpr Index invalid_index = 0xffffffffu;
 
 //! Why a call could not do its job. `exit_code()` maps each to the command's exit code.
 enum class ErrorCode {
-    internal,          //!< A guarantee of ours did not hold: a bug in bot2nurbs.
-    bad_option,        //!< An option is out of its range or contradicts another.
-    cannot_read,       //!< A file is missing, truncated, or not in the format it claims.
-    cannot_write,      //!< A file cannot be created, written or renamed.
-    empty_input,       //!< There is nothing to work on.
-    bad_geometry,      //!< Non-finite coordinates, or all points on one point or line.
-    not_manifold,      //!< An edge or vertex is not two-manifold.
-    not_orientable,    //!< Faces cannot be oriented consistently.
-    open_mesh,         //!< The mesh has boundary loops where a closed one is needed.
-    self_intersecting, //!< Faces cross each other and `strict` was asked for.
-    stale_domain,      //!< A domain or constraint file belongs to another mesh.
-    invalid_domain,    //!< A supplied domain fails validation.
-    layout_failed,     //!< No quadrilateral layout was found.
-    fit_failed,        //!< The fitting system could not be solved.
-    brep_failed,       //!< The assembled B-Rep failed its checks.
-    cancelled,         //!< The caller cancelled; nothing was written.
+    internal,            //!< A guarantee of ours did not hold: a bug in bot2nurbs.
+    bad_option,          //!< An option is out of its range or contradicts another.
+    cannot_read,         //!< A file is missing, truncated, or not in the format it claims.
+    cannot_write,        //!< A file cannot be created, written or renamed.
+    empty_input,         //!< There is nothing to work on.
+    bad_geometry,        //!< Non-finite coordinates, or all points on one point or line.
+    not_manifold,        //!< An edge or vertex is not two-manifold.
+    not_orientable,      //!< Faces cannot be oriented consistently.
+    open_mesh,           //!< The mesh has boundary loops where a closed one is needed.
+    self_intersecting,   //!< Faces cross each other and `strict` was asked for.
+    stale_domain,        //!< A domain or constraint file belongs to another mesh.
+    invalid_domain,      //!< A supplied domain fails validation.
+    constraint_conflict, //!< Constraints contradict each other or the mesh.
+    layout_failed,       //!< No quadrilateral layout was found.
+    fit_failed,          //!< The fitting system could not be solved.
+    brep_failed,         //!< The assembled B-Rep failed its checks.
+    cancelled,           //!< The caller cancelled; nothing was written.
 };
 
 //! An error: what, where (the first bad element, in the numbering the message names), what to do.

@@ -4,6 +4,7 @@
 #include "bot2nurbs/detect_features.h"
 #include "bot2nurbs/domain_samples.h"
 #include "bot2nurbs/layout.h"
+#include "convert/constraints_input.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -136,8 +137,7 @@ void log_rounds(const FitSummary& fit, const Context& context)
 
 } // namespace
 
-Result<ConvertedComponent> convert_component(const MeshComponent& component,
-                                             std::optional<QuadDomain> supplied,
+Result<ConvertedComponent> convert_component(const MeshComponent& component, DomainWishes wishes,
                                              const ConvertOptions& options,
                                              const std::vector<KnotForm>& forms,
                                              const std::string& stage_suffix, Context& context)
@@ -164,18 +164,22 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component,
     outcome.features = describe(*features, component);
 
     stage("layout");
-    if (supplied) {
-        result.domain = std::move(*supplied);
+    if (wishes.supplied) {
+        result.domain = std::move(*wishes.supplied);
     } else {
         LayoutOptions layout_options;
         layout_options.patches = options.patches;
         layout_options.features = feature_paths(*features);
+        layout_options.constraints = std::move(wishes.constraints);
         layout_options.seed = options.seed;
         Result<LayoutResult> layout = build_layout(*unit, layout_options, context);
         if (!layout)
             return layout.error();
         result.domain = std::move(layout->domain);
         result.domain.source_signature = signature(component.mesh);
+        if (options.constraints_out)
+            result.constraints = constraints_used(layout_options.constraints,
+                                                  layout_options.features, *unit, result.domain);
         outcome.layout = layout->summary;
         for (const std::string& note : layout->summary.notes)
             context.log(LogLevel::info, "layout: " + note);

@@ -3,6 +3,7 @@
 
 #include "bot2nurbs/domain_file.h"
 #include "convert/component.h"
+#include "convert/constraints_input.h"
 #include "convert/domain_input.h"
 #include "convert/input.h"
 #include "convert/tessellation.h"
@@ -196,6 +197,12 @@ Result<std::vector<PendingFile>> make_files(const ConvertOptions& options, const
             return bytes.error();
         add(*options.tessellation, "ply", std::move(*bytes));
     }
+    if (options.constraints_out) {
+        std::vector<DomainConstraints> constraints;
+        for (ConvertedComponent& c : components)
+            constraints.push_back(std::move(c.constraints));
+        add(*options.constraints_out, "constraints", constraint_list_to_json(constraints));
+    }
     if (options.domain_out) {
         std::vector<QuadDomain> domains;
         for (ConvertedComponent& c : components)
@@ -211,7 +218,7 @@ std::optional<Error> ConvertOptions::check() const
 {
     if (input.empty())
         return bad_option("no input file is named");
-    if (outputs.empty() && !domain_out && !tessellation)
+    if (outputs.empty() && !domain_out && !constraints_out && !tessellation)
         return bad_option("no output file is named");
     for (const std::string& path : outputs) {
         const std::optional<Format> format = format_of(path);
@@ -227,6 +234,10 @@ std::optional<Error> ConvertOptions::check() const
             fmt::format("--patches {} is too few: at least {}", *patches, fewest_patches));
     if (patches && domain_in)
         return bad_option("--patches steers the automatic layout: it contradicts --domain-in");
+    if (domain_in && (constraints || constraints_out))
+        return bad_option(
+            fmt::format("{} is about the automatic layout: it contradicts --domain-in",
+                        constraints ? "--constraints" : "--constraints-out"));
     if (std::optional<Error> failed = fit.check())
         return failed;
     if (std::optional<Error> failed = feature_options.check())
@@ -237,15 +248,19 @@ std::optional<Error> ConvertOptions::check() const
     std::vector<std::string> paths = outputs;
     if (domain_out)
         paths.push_back(*domain_out);
+    if (constraints_out)
+        paths.push_back(*constraints_out);
     if (tessellation)
         paths.push_back(*tessellation);
     for (std::size_t i = 0; i < paths.size(); ++i) {
         if (std::find(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), paths[i]) !=
             paths.begin() + static_cast<std::ptrdiff_t>(i))
             return bad_option(fmt::format("{} is to be written twice", paths[i]));
-        std::error_code unknown;
-        if (fs::equivalent(paths[i], input, unknown))
-            return bad_option(fmt::format("{} is the input: it would be overwritten", paths[i]));
+        for (const auto& read : {std::optional<std::string>(input), domain_in, constraints}) {
+            std::error_code unknown;
+            if (read && fs::equivalent(paths[i], *read, unknown))
+                return bad_option(fmt::format("{} is read: it would be overwritten", paths[i]));
+        }
         if (Status failed = check_folder(paths[i]))
             return failed;
     }
@@ -278,6 +293,14 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
         supplied = std::move(*domains);
     }
 
+    std::vector<DomainConstraints> constraints(mesh.components.size());
+    if (options.constraints) {
+        Result<std::vector<DomainConstraints>> read = read_constraints(*options.constraints, mesh);
+        if (!read)
+            return read.error();
+        constraints = std::move(*read);
+    }
+
     // The knot forms that the outputs need, each made once.
     std::vector<KnotForm> forms;
     for (const std::string& path : options.outputs) {
@@ -291,12 +314,13 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
     std::vector<ConvertedComponent> components;
     const std::size_t count = mesh.components.size();
     for (std::size_t c = 0; c < count; ++c) {
-        std::optional<QuadDomain> domain;
+        DomainWishes wishes;
         if (options.domain_in)
-            domain = std::move(supplied[c]);
+            wishes.supplied = std::move(supplied[c]);
+        wishes.constraints = std::move(constraints[c]);
         const std::string suffix = count > 1 ? fmt::format(" {}/{}", c + 1, count) : "";
         Result<ConvertedComponent> converted = convert_component(
-            mesh.components[c], std::move(domain), options, forms, suffix, context);
+            mesh.components[c], std::move(wishes), options, forms, suffix, context);
         if (!converted) {
             Error error = converted.error();
             if (count > 1 && error.code != ErrorCode::cancelled)

@@ -5,32 +5,14 @@
 #include "bot2nurbs/domain_file.h"
 #include "bot2nurbs/validate_domain.h"
 #include "convert/input.h"
+#include "convert/text_file.h"
 
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 namespace bot2nurbs {
 
 namespace {
-
-Result<std::string> read_text(const std::string& path)
-{
-    std::ifstream file(path, std::ios::binary);
-    if (!file)
-        return Error{ErrorCode::cannot_read, "cannot open " + path, invalid_index};
-    std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    if (file.bad())
-        return Error{ErrorCode::cannot_read, "cannot read " + path, invalid_index};
-    return text;
-}
-
-Error in_file(const std::string& path, Error error)
-{
-    error.message = path + ": " + error.message;
-    return error;
-}
 
 Result<std::vector<QuadDomain>> read_domains(const std::string& path, const RepairedMesh& mesh)
 {

@@ -67,6 +67,8 @@ Json options_json(const ConvertOptions& o)
     j["strict"] = o.strict;
     j["domain_in"] = o.domain_in ? Json(*o.domain_in) : Json(nullptr);
     j["domain_out"] = o.domain_out ? Json(*o.domain_out) : Json(nullptr);
+    j["constraints"] = o.constraints ? Json(*o.constraints) : Json(nullptr);
+    j["constraints_out"] = o.constraints_out ? Json(*o.constraints_out) : Json(nullptr);
     j["units"] = o.write.units;
     j["archive_version"] = o.write.archive_version;
     j["step_schema"] = o.write.step_schema == StepSchema::ap242 ? "AP242" : "AP214";

@@ -17,7 +17,8 @@ int exit_code(ErrorCode code)
     case ErrorCode::open_mesh:
     case ErrorCode::self_intersecting:
     case ErrorCode::stale_domain:
-    case ErrorCode::invalid_domain: return 5;
+    case ErrorCode::invalid_domain:
+    case ErrorCode::constraint_conflict: return 5;
     case ErrorCode::layout_failed:
     case ErrorCode::fit_failed:
     case ErrorCode::brep_failed: return 6;
@@ -41,6 +42,7 @@ const char* name(ErrorCode code)
     case ErrorCode::self_intersecting: return "self_intersecting";
     case ErrorCode::stale_domain: return "stale_domain";
     case ErrorCode::invalid_domain: return "invalid_domain";
+    case ErrorCode::constraint_conflict: return "constraint_conflict";
     case ErrorCode::layout_failed: return "layout_failed";
     case ErrorCode::fit_failed: return "fit_failed";
     case ErrorCode::brep_failed: return "brep_failed";

@@ -130,11 +130,8 @@ std::vector<Constraint> read_pairs(const JsonNode& node, std::size_t site_count)
     return constraints;
 }
 
-} // namespace
-
-std::string constraints_to_json(const DomainConstraints& constraints)
+void write_constraints(JsonText& json, const DomainConstraints& constraints)
 {
-    JsonText json;
     json.open('{');
     json.line().key("schema").value(std::string(schema_name) + "/1");
     json.line().key("source_signature").value(constraints.source_signature);
@@ -170,57 +167,114 @@ std::string constraints_to_json(const DomainConstraints& constraints)
     write_pairs(json, "adjacencies", constraints.adjacencies);
     write_pairs(json, "pairings", constraints.pairings);
     json.line().close('}');
+}
+
+DomainConstraints read_constraints(const JsonNode& root, const ManifoldMesh& source)
+{
+    expect_schema(root, schema_name);
+    root.allow_only({"schema", "source_signature", "patches", "sites", "paths", "features",
+                     "adjacencies", "pairings"});
+    DomainConstraints constraints;
+    constraints.source_signature = root.at("source_signature").text();
+    expect_signature(root.at("source_signature"), signature(source));
+    if (root.has("patches")) {
+        constraints.patches = root.at("patches").index(patch_limit, "patch");
+        if (*constraints.patches < 1)
+            root.at("patches").fail("expected at least one patch");
+    }
+    if (root.has("sites")) {
+        const JsonNode sites = root.at("sites");
+        std::set<SiteKey> seen;
+        for (std::size_t i = 0; i < sites.size(); ++i) {
+            constraints.sites.push_back(read_site(sites.at(i), source));
+            if (!seen.insert(site_key(constraints.sites.back(), source)).second)
+                sites.at(i).fail("this site is named twice");
+        }
+    }
+    if (root.has("paths")) {
+        const JsonNode paths = root.at("paths");
+        for (std::size_t i = 0; i < paths.size(); ++i) {
+            paths.at(i).allow_only({"vertices"});
+            constraints.paths.push_back({read_path(paths.at(i).at("vertices"), source, 2)});
+        }
+    }
+    if (root.has("features")) {
+        const JsonNode features = root.at("features");
+        for (std::size_t i = 0; i < features.size(); ++i) {
+            features.at(i).allow_only({"kind", "vertices"});
+            FeaturePath path;
+            path.kind = static_cast<FeatureKind>(read_name(features.at(i).at("kind"), kind_names));
+            path.vertices = read_path(features.at(i).at("vertices"), source,
+                                      path.kind == FeatureKind::corner ? 1 : 2);
+            constraints.features.push_back(std::move(path));
+        }
+    }
+    const std::size_t sites = constraints.sites.size();
+    if (root.has("adjacencies"))
+        constraints.adjacencies = read_pairs<AdjacencyConstraint>(root.at("adjacencies"), sites);
+    if (root.has("pairings"))
+        constraints.pairings = read_pairs<PairingConstraint>(root.at("pairings"), sites);
+    return constraints;
+}
+
+} // namespace
+
+std::string constraints_to_json(const DomainConstraints& constraints)
+{
+    JsonText json;
+    write_constraints(json, constraints);
+    return json.text() + '\n';
+}
+
+std::string constraint_list_to_json(const std::vector<DomainConstraints>& constraints)
+{
+    if (constraints.size() == 1)
+        return constraints_to_json(constraints.front());
+    JsonText json;
+    json.open('[');
+    for (const DomainConstraints& c : constraints) {
+        json.line();
+        write_constraints(json, c);
+    }
+    json.line().close(']');
     return json.text() + '\n';
 }
 
 Result<DomainConstraints> constraints_from_json(const std::string& text, const ManifoldMesh& source)
 {
-    return read_json<DomainConstraints>(text, [&](const JsonNode& root) {
-        expect_schema(root, schema_name);
-        root.allow_only({"schema", "source_signature", "patches", "sites", "paths", "features",
-                         "adjacencies", "pairings"});
-        DomainConstraints constraints;
-        constraints.source_signature = root.at("source_signature").text();
-        expect_signature(root.at("source_signature"), signature(source));
-        if (root.has("patches")) {
-            constraints.patches = root.at("patches").index(patch_limit, "patch");
-            if (*constraints.patches < 1)
-                root.at("patches").fail("expected at least one patch");
+    return read_json<DomainConstraints>(
+        text, [&](const JsonNode& root) { return read_constraints(root, source); });
+}
+
+Result<std::vector<DomainConstraints>>
+constraint_list_from_json(const std::string& text, const std::vector<ManifoldMesh>& sources)
+{
+    return read_json<std::vector<DomainConstraints>>(text, [&](const JsonNode& root) {
+        std::vector<JsonNode> items;
+        if (root.is_array())
+            for (std::size_t i = 0; i < root.size(); ++i)
+                items.push_back(root.at(i));
+        else
+            items.push_back(root);
+        std::vector<std::string> known;
+        for (const ManifoldMesh& source : sources)
+            known.push_back(signature(source));
+        std::vector<DomainConstraints> constraints(sources.size());
+        std::vector<char> used(sources.size(), 0);
+        for (const JsonNode& item : items) {
+            expect_schema(item, schema_name);
+            const JsonNode node = item.at("source_signature");
+            const std::string wanted = node.text();
+            std::size_t c = 0;
+            while (c < sources.size() && (used[c] || known[c] != wanted))
+                ++c;
+            if (c == sources.size())
+                node.fail("made for the mesh with signature " + wanted +
+                              ", which no component of the input has",
+                          ErrorCode::stale_domain);
+            constraints[c] = read_constraints(item, sources[c]);
+            used[c] = 1;
         }
-        if (root.has("sites")) {
-            const JsonNode sites = root.at("sites");
-            std::set<SiteKey> seen;
-            for (std::size_t i = 0; i < sites.size(); ++i) {
-                constraints.sites.push_back(read_site(sites.at(i), source));
-                if (!seen.insert(site_key(constraints.sites.back(), source)).second)
-                    sites.at(i).fail("this site is named twice");
-            }
-        }
-        if (root.has("paths")) {
-            const JsonNode paths = root.at("paths");
-            for (std::size_t i = 0; i < paths.size(); ++i) {
-                paths.at(i).allow_only({"vertices"});
-                constraints.paths.push_back({read_path(paths.at(i).at("vertices"), source, 2)});
-            }
-        }
-        if (root.has("features")) {
-            const JsonNode features = root.at("features");
-            for (std::size_t i = 0; i < features.size(); ++i) {
-                features.at(i).allow_only({"kind", "vertices"});
-                FeaturePath path;
-                path.kind =
-                    static_cast<FeatureKind>(read_name(features.at(i).at("kind"), kind_names));
-                path.vertices = read_path(features.at(i).at("vertices"), source,
-                                          path.kind == FeatureKind::corner ? 1 : 2);
-                constraints.features.push_back(std::move(path));
-            }
-        }
-        const std::size_t sites = constraints.sites.size();
-        if (root.has("adjacencies"))
-            constraints.adjacencies =
-                read_pairs<AdjacencyConstraint>(root.at("adjacencies"), sites);
-        if (root.has("pairings"))
-            constraints.pairings = read_pairs<PairingConstraint>(root.at("pairings"), sites);
         return constraints;
     });
 }

@@ -64,18 +64,20 @@ std::vector<char> mark_edges(const ManifoldMesh& mesh, const std::vector<Feature
 }
 
 std::vector<Curve> trace_curves(const ManifoldMesh& mesh, const std::vector<char>& marks,
-                                const std::vector<char>& corners)
+                                const std::vector<char>& nodes)
 {
     const Incidence at(mesh, marks);
     const auto is_node = [&](Index v) {
-        return at.degree(v) != 2 || corners[v] ||
+        return at.degree(v) != 2 || nodes[v] ||
                marks[at.halfedge[at.offset[v]]] != marks[at.halfedge[at.offset[v] + 1]];
     };
     std::vector<char> used(mesh.halfedge_count(), 0);
     std::vector<Curve> curves;
     const auto trace = [&](Index v, Index h) {
         Curve curve;
-        curve.kind = static_cast<FeatureKind>(marks[h] - 1);
+        curve.whole = marks[h] == joint_mark;
+        curve.kind =
+            curve.whole ? FeatureKind::smooth_seam : static_cast<FeatureKind>(marks[h] - 1);
         curve.vertices.push_back(v);
         const Index start = v;
         for (;;) {

@@ -22,6 +22,8 @@ std::vector<Piece> pieces_of_curves(const LayoutLevel& level, const Tiles& tiles
     const auto is_site = [&tiles](Index v) { return tiles.sites()[tiles.labels()[v]] == v; };
     std::vector<Piece> pieces;
     for (const Curve& curve : level.curves()) {
+        if (curve.whole)
+            continue;
         const std::vector<Vec3> point = level.points(curve);
         std::size_t from = 0;
         double half = 0.0;

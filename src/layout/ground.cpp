@@ -79,13 +79,19 @@ int euler_characteristic(const ManifoldMesh& mesh)
            static_cast<int>(mesh.face_count());
 }
 
-Ground prepare_ground(const ManifoldMesh& source, const LayoutOptions& options,
-                      LayoutSummary& summary)
+Result<Ground> prepare_ground(const ManifoldMesh& source, const LayoutOptions& options,
+                              LayoutSummary& summary)
 {
+    const DomainConstraints& wanted = options.constraints;
+    if (Status failed = check_constrained_paths(wanted, source))
+        return *failed;
     Ground ground;
     std::vector<FeaturePath> edges;
     ground.corner.assign(source.vertex_count(), 0);
-    for (const FeaturePath& path : options.features) {
+    std::vector<FeaturePath> paths = options.features;
+    for (const FeaturePath& path : constrained_paths(wanted))
+        paths.push_back(path);
+    for (const FeaturePath& path : paths) {
         if (path.kind != FeatureKind::corner)
             edges.push_back(path);
         else
@@ -97,37 +103,56 @@ Ground prepare_ground(const ManifoldMesh& source, const LayoutOptions& options,
     const double smoothing = curvature_scale * source.box().diagonal();
     Measured on_source = measure(source, ground.marks, ground.corner, smoothing);
     const double handles = 0.5 * (2 - euler_characteristic(source));
-    const double by_bending =
-        options.patches ? *options.patches : default_patches(on_source.bending, handles);
+    const std::optional<Index> asked = options.patches ? options.patches : wanted.patches;
+    const double by_bending = asked ? *asked : default_patches(on_source.bending, handles);
     // Patches of this width where the density is one.
     const double unit = std::sqrt(surface_area(source) / by_bending);
     on_source.level->refine_at_curves(unit);
     double count = by_bending;
-    if (!options.patches) {
-        const double wanted =
+    if (!asked) {
+        const double by_curves =
             scaled_area(on_source.level->mesh(), on_source.level->density()) / (unit * unit);
-        count = std::clamp(wanted, by_bending, std::max(by_bending, max_default_patches_genus_3));
+        count =
+            std::clamp(by_curves, by_bending, std::max(by_bending, max_default_patches_genus_3));
     }
     summary.target_patches = static_cast<Index>(std::lround(count));
 
-    std::vector<double> limit(source.vertex_count(), carrier_resolution * unit);
+    CarrierPlan plan;
+    plan.limit.assign(source.vertex_count(), carrier_resolution * unit);
     for (Index v = 0; v < on_source.level->mesh().vertex_count(); ++v) {
-        double& least = limit[on_source.level->name(v)];
+        double& least = plan.limit[on_source.level->name(v)];
         least = std::min(least, carrier_resolution * unit / on_source.level->density()[v]);
     }
-    PlannedCarrier planned = refine_carrier(
-        source,
-        {std::move(limit), max_refinement_floor + max_refinement_factor * source.face_count(),
-         std::move(ground.marks), {}});
-    ground.carrier = std::move(planned.carrier);
+    plan.max_splits = max_refinement_floor + max_refinement_factor * source.face_count();
+    plan.marks = std::move(ground.marks);
+    for (const ConstraintSite& site : wanted.sites)
+        if (!site.vertex)
+            plan.points.push_back(site.point);
+    PlannedCarrier planned = refine_carrier(source, std::move(plan));
+    ground.carrier = std::make_unique<CarrierMesh>(std::move(planned.carrier));
     ground.marks = std::move(planned.marks);
-    ground.corner.resize(ground.carrier.mesh.vertex_count(), 0);
-    if (ground.carrier.refined)
+    const ManifoldMesh& mesh = ground.carrier->mesh;
+    ground.corner.resize(mesh.vertex_count(), 0);
+    if (ground.carrier->refined)
         summary.notes.push_back("edges split where the mesh is coarse for its patches: " +
                                 std::to_string(source.face_count()) + " faces became " +
-                                std::to_string(ground.carrier.mesh.face_count()));
-    Measured on_carrier = measure(ground.carrier.mesh, ground.marks, ground.corner, smoothing);
+                                std::to_string(mesh.face_count()));
+    Result<CarrierConstraints> constraints = place_constraints(wanted, planned.point_vertices);
+    if (!constraints)
+        return constraints.error();
+    ground.constraints = std::move(*constraints);
+    if (Status failed = route_joints(mesh, ground.constraints, ground.marks))
+        return *failed;
+
+    // Curves end at sites on them.
+    std::vector<char> node = ground.corner;
+    for (const Index s : ground.constraints.sites)
+        node[s] = 1;
+    Measured on_carrier = measure(mesh, ground.marks, node, smoothing);
     on_carrier.level->refine_at_curves(unit);
+    on_carrier.level->required = ground.constraints.sites;
+    for (const auto& pair : ground.constraints.apart)
+        on_carrier.level->apart.push_back({pair.a, pair.b});
     ground.cut = std::move(on_carrier.cut);
     ground.level = std::move(on_carrier.level);
     ground.width = std::sqrt(scaled_area(ground.level->mesh(), ground.level->density()) / count);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "bot2nurbs/layout.h"
 
-#include "domain/domain_paths.h"
 #include "layout/base_complex.h"
 #include "layout/ground.h"
 #include "layout/improve.h"
+#include "layout/make_domain.h"
 #include "layout/pair_triangles.h"
 #include "layout/place_sites.h"
 #include "layout/proxy.h"
@@ -48,14 +48,29 @@ SizeMetric metric_of(const LayoutLevel& level, double width)
     return {level.density(), width * width};
 }
 
+// What the constraints ask of a complex on a level.
+void bind(PatchComplex& complex, const LayoutLevel& level, const CarrierConstraints& constraints)
+{
+    for (const Index s : constraints.sites)
+        level.for_each_copy(s, [&complex](Index v) { complex.pin(v); });
+    for (const auto& [s, quads] : constraints.valences)
+        if (!level.on_curve(s))
+            complex.want(level.any_copy(s), quads);
+    for (const auto& [a, b] : level.apart)
+        level.for_each_copy(a, [&, b = b](Index va) {
+            level.for_each_copy(b, [&](Index vb) { complex.keep_apart(va, vb); });
+        });
+}
+
 // K_tri on a level.
-Result<PatchComplex> make_triangles(const LayoutLevel& level, double width, Index target,
+Result<PatchComplex> make_triangles(const LayoutLevel& level, const Ground& ground, Index target,
                                     LayoutSummary& summary, Context& context)
 {
     SitePlan plan;
-    plan.width = width / std::sqrt(surplus);
+    plan.width = ground.width / std::sqrt(surplus);
     plan.inner = inner_sites(level, plan.width, surplus * static_cast<double>(target));
     plan.relaxations = relaxation_rounds;
+    plan.keep_apart = true;
     plan.even_regions = true;
     Tiles tiles(level.mesh(), level.density());
     summary.sites_added = place_sites(level, plan, tiles, context);
@@ -65,67 +80,159 @@ Result<PatchComplex> make_triangles(const LayoutLevel& level, double width, Inde
     Result<PatchComplex> complex = build_base_complex(tiles, context);
     if (!complex)
         return complex;
+    bind(*complex, level, ground.constraints);
     straighten_triangles(*complex, context);
-    improve_triangles(*complex, metric_of(level, width), context);
+    improve_triangles(*complex, metric_of(level, ground.width), context);
     if (context.cancelled())
         return Context::cancelled_error("layout");
     return complex;
 }
 
-Result<QuadDomain> make_domain(const PatchComplex& complex, CarrierMesh carrier,
-                               const std::vector<char>& is_corner)
+// Makes two vertices neighbours by turning the edge between two triangles that have them as
+// opposite corners. False when there is no such edge.
+bool join_by_flip(PatchComplex& complex, Index a, Index b)
 {
-    QuadDomain domain;
-    const ManifoldMesh& mesh = carrier.mesh;
-    std::vector<Index> number(mesh.vertex_count(), invalid_index);
-    std::vector<std::array<Index, 4>> quads;
-    for (Index f = 0; f < complex.faces().size(); ++f) {
-        const std::vector<Index> corners = complex.corners(f);
-        std::array<Index, 4> quad{};
-        for (std::size_t k = 0; k < 4; ++k) {
-            if (number[corners[k]] == invalid_index) {
-                number[corners[k]] = static_cast<Index>(domain.vertices.size());
-                domain.vertices.push_back(corners[k]);
-            }
-            quad[k] = number[corners[k]];
-        }
-        quads.push_back(quad);
-    }
-    std::vector<std::pair<Index, Index>> creases;
-    for (Index p = 0; p < complex.paths().size(); ++p)
-        if (complex.paths()[p].mark == mark_of(FeatureKind::crease) && !complex.is_boundary(p))
-            creases.emplace_back(number[complex.paths()[p].geometry.a],
-                                 number[complex.paths()[p].geometry.b]);
-    std::vector<Index> corners;
-    for (Index v = 0; v < domain.vertices.size(); ++v)
-        if (domain.vertices[v] < is_corner.size() && is_corner[domain.vertices[v]])
-            corners.push_back(v);
-    Result<QuadComplex> built = QuadComplex::build(static_cast<Index>(domain.vertices.size()),
-                                                   std::move(quads), creases, std::move(corners));
-    if (!built)
-        return built.error();
-    domain.complex = std::move(*built);
-    domain.edges.resize(domain.complex.edge_count());
-    for (Index f = 0; f < complex.faces().size(); ++f)
-        for (Index s = 0; s < 4; ++s) {
-            const Index h = 4 * f + s, e = domain.complex.edge(h);
-            if (domain.complex.halfedge_of_edge(e) != h)
+    OverlayBuilder builder(complex.mesh());
+    for (Index p = 0; p < complex.paths().size(); ++p) {
+        const PatchComplex::Path& path = complex.paths()[p];
+        if (!path.alive || complex.is_fixed(p))
+            continue;
+        const std::vector<Index> faces{path.left, path.right};
+        const auto border = complex.border(faces);
+        if (!border || border->size() != 4)
+            continue;
+        for (Index i = 0; i < 2; ++i) {
+            if (std::minmax(complex.start((*border)[i]), complex.start((*border)[i + 2])) !=
+                    std::minmax(a, b) ||
+                std::minmax(complex.start((*border)[i + 1]),
+                            complex.start((*border)[(i + 3) % 4])) !=
+                    std::minmax(path.geometry.a, path.geometry.b))
                 continue;
-            const PatchComplex::Side& side = complex.faces()[f].sides[s];
-            const PathSide walk{&complex.paths()[side.path].geometry, side.reversed};
-            SurfacePath path;
-            path.a = walk.start();
-            path.b = walk.end();
-            for (std::size_t i = 0; i < walk.node_count(); ++i)
-                path.nodes.push_back(walk.node(mesh, i));
-            domain.edges[e].a = number[path.a];
-            domain.edges[e].b = number[path.b];
-            domain.edges[e].path = path_points(mesh, path);
-            domain.edges[e].crease = domain.complex.is_crease(e);
+            auto change = complex.plan(faces, *border, {{i, i + 2}}, builder);
+            if (change)
+                complex.apply(std::move(*change));
+            return change.has_value();
         }
-    domain.carrier = std::move(carrier);
-    domain.origin = "eck";
-    return domain;
+    }
+    return false;
+}
+
+// The pairings asked for, in vertices of the level; edges of those that are to be joined are made
+// where they are missing.
+Result<PairingWishes> pairing_wishes(PatchComplex& triangles, const LayoutLevel& level,
+                                     const CarrierConstraints& constraints)
+{
+    PairingWishes wishes;
+    for (const auto& pair : constraints.paired) {
+        bool found = false;
+        for (const bool flip : {false, true})
+            level.for_each_copy(pair.a, [&](Index a) {
+                level.for_each_copy(pair.b, [&](Index b) {
+                    if (found ||
+                        (!triangles.path_between(a, b) && !(flip && join_by_flip(triangles, a, b))))
+                        return;
+                    found = !triangles.is_fixed(*triangles.path_between(a, b));
+                    if (found)
+                        wishes.joined.emplace_back(a, b);
+                });
+            });
+        if (!found)
+            return Error{
+                ErrorCode::constraint_conflict,
+                "pairing " + std::to_string(pair.number) +
+                    ": its sites are joined by no edge of the triangles, nor are they opposite "
+                    "corners of two of them: they are too far apart, or a path or feature "
+                    "lies between",
+                pair.number};
+    }
+    for (const auto& pair : constraints.unpaired)
+        level.for_each_copy(pair.a, [&](Index a) {
+            level.for_each_copy(pair.b, [&](Index b) { wishes.parted.emplace_back(a, b); });
+        });
+    triangles.compact();
+    return wishes;
+}
+
+// The complex of quads on the carrier and what is needed to make a domain of it.
+struct Quads {
+    std::unique_ptr<CarrierMesh> refined; // Where paths had to be cut in; else the ground's.
+    PatchComplex complex;
+};
+
+Result<Quads> make_quads(const ManifoldMesh& source, const LayoutOptions& options,
+                         const Ground& ground, const Proxy* proxy, LayoutSummary& summary,
+                         Context& context)
+{
+    const ManifoldMesh& carrier = ground.carrier->mesh;
+    const LayoutLevel& level = proxy ? proxy->level() : *ground.level;
+    Result<PatchComplex> triangles =
+        make_triangles(level, ground, summary.target_patches, summary, context);
+    if (!triangles)
+        return triangles.error();
+    const auto on_carrier = [&](const PatchComplex& made) -> Result<PatchComplex> {
+        if (!proxy)
+            return uncut(made, *ground.cut, carrier, ground.marks);
+        Result<PatchComplex> lifted = proxy->lift(made, context);
+        if (!lifted)
+            return lifted;
+        return uncut(*lifted, *ground.cut, carrier, ground.marks);
+    };
+    const Result<PairingWishes> wishes = pairing_wishes(*triangles, level, ground.constraints);
+    if (!wishes)
+        return wishes.error();
+    if (!options.split_triangles) {
+        PatchComplex quads = *triangles;
+        const Result<bool> paired = pair_triangles(quads, *wishes, context);
+        if (!paired)
+            return paired.error();
+        if (*paired) {
+            improve_quads(quads, summary.target_patches, metric_of(level, ground.width), context);
+            if (context.cancelled())
+                return Context::cancelled_error("layout");
+            Result<PatchComplex> lifted = on_carrier(quads);
+            if (!lifted)
+                return lifted.error();
+            if (is_simple(*lifted))
+                return Quads{nullptr, std::move(*lifted)};
+        }
+    }
+    if (!ground.constraints.paired.empty() || !ground.constraints.unpaired.empty())
+        return Error{ErrorCode::constraint_conflict,
+                     "the pairings asked for leave triangles that cannot be paired", invalid_index};
+    summary.subdivided = true;
+    summary.notes.push_back("triangles split in three quads each");
+    Result<PatchComplex> whole = on_carrier(*triangles);
+    if (!whole)
+        return whole.error();
+    Result<SplitComplex> split = split_in_quads(*whole, source, *ground.carrier, context);
+    if (!split)
+        return split.error();
+    if (!ground.constraints.binds()) {
+        const std::vector<double> density(split->carrier->mesh.vertex_count(), 1.0);
+        improve_quads(split->complex, summary.target_patches,
+                      {density, scaled_area(split->carrier->mesh, density) /
+                                    static_cast<double>(summary.target_patches)},
+                      context);
+    }
+    if (context.cancelled())
+        return Context::cancelled_error("layout");
+    if (!is_simple(split->complex))
+        return Error{ErrorCode::layout_failed, "two edges of the layout join the same vertices",
+                     invalid_index};
+    return Quads{std::move(split->carrier), std::move(split->complex)};
+}
+
+// A coarse mesh in place of the ground's, where that is much finer than patches need.
+Result<std::optional<Proxy>> make_proxy(const Ground& ground, Index patches, Context& context)
+{
+    const double cells =
+        static_cast<double>(patches) * 4.0 / (1.732 * proxy_resolution * proxy_resolution);
+    if (!(static_cast<double>(ground.carrier->mesh.face_count()) > proxy_saving * cells))
+        return std::optional<Proxy>();
+    Result<Proxy> proxy = Proxy::build(*ground.level, proxy_resolution * ground.width, context);
+    if (!proxy)
+        return proxy.error();
+    return std::optional<Proxy>(std::move(*proxy));
 }
 
 } // namespace
@@ -138,75 +245,29 @@ Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOption
                      invalid_index};
     LayoutResult result;
     LayoutSummary& summary = result.summary;
-    Ground ground = prepare_ground(source, options, summary);
+    Result<Ground> ground = prepare_ground(source, options, summary);
+    if (!ground)
+        return ground.error();
     if (context.cancelled())
         return Context::cancelled_error("layout");
 
-    // A fine mesh is stood for by a coarse one.
-    std::optional<Proxy> proxy;
-    const double cells = static_cast<double>(summary.target_patches) * 4.0 /
-                         (1.732 * proxy_resolution * proxy_resolution);
-    if (static_cast<double>(ground.carrier.mesh.face_count()) > proxy_saving * cells) {
-        Result<Proxy> built = Proxy::build(*ground.level, proxy_resolution * ground.width, context);
-        if (!built && built.error().code == ErrorCode::cancelled)
-            return built.error();
-        if (built)
-            proxy = std::move(*built);
-        else
-            summary.notes.push_back("laid out on the whole mesh: " + built.error().message);
+    // The coarse mesh only saves time: what fails on it is done on the whole mesh.
+    Result<std::optional<Proxy>> proxy = make_proxy(*ground, summary.target_patches, context);
+    Result<Quads> quads = proxy.ok() ? make_quads(source, options, *ground,
+                                                  *proxy ? &**proxy : nullptr, summary, context)
+                                     : Result<Quads>(proxy.error());
+    if (!quads && quads.error().code == ErrorCode::layout_failed && (!proxy || *proxy)) {
+        summary.notes.push_back("laid out on the whole mesh: " + quads.error().message);
+        quads = make_quads(source, options, *ground, nullptr, summary, context);
     }
-    const LayoutLevel& level = proxy ? proxy->level() : *ground.level;
-    Result<PatchComplex> complex =
-        make_triangles(level, ground.width, summary.target_patches, summary, context);
-    if (!complex)
-        return complex.error();
-    const auto on_carrier = [&](const PatchComplex& made) -> Result<PatchComplex> {
-        if (!proxy)
-            return uncut(made, *ground.cut, ground.carrier.mesh, ground.marks);
-        Result<PatchComplex> lifted = proxy->lift(made, context);
-        if (!lifted)
-            return lifted;
-        return uncut(*lifted, *ground.cut, ground.carrier.mesh, ground.marks);
-    };
-    if (!options.split_triangles) {
-        PatchComplex quads = *complex;
-        const Result<bool> paired = pair_triangles(quads, context);
-        if (!paired)
-            return paired.error();
-        if (*paired) {
-            improve_quads(quads, summary.target_patches, metric_of(level, ground.width), context);
-            if (context.cancelled())
-                return Context::cancelled_error("layout");
-            const Result<PatchComplex> lifted = on_carrier(quads);
-            if (!lifted)
-                return lifted.error();
-            Result<QuadDomain> domain =
-                make_domain(*lifted, std::move(ground.carrier), ground.corner);
-            if (!domain)
-                return domain.error();
-            result.domain = std::move(*domain);
-            return result;
-        }
-    }
-    summary.subdivided = true;
-    summary.notes.push_back("triangles split in three quads each");
-    Result<PatchComplex> triangles = on_carrier(*complex);
-    if (!triangles)
-        return triangles.error();
-    Result<SplitComplex> split = split_in_quads(*triangles, source, ground.carrier, context);
-    if (!split)
-        return split.error();
-    const std::vector<double> density(split->carrier->mesh.vertex_count(), 1.0);
-    improve_quads(split->complex, summary.target_patches,
-                  {density, scaled_area(split->carrier->mesh, density) /
-                                static_cast<double>(summary.target_patches)},
-                  context);
-    if (context.cancelled())
-        return Context::cancelled_error("layout");
-    Result<QuadDomain> domain =
-        make_domain(split->complex, std::move(*split->carrier), ground.corner);
+    if (!quads)
+        return quads.error();
+    CarrierMesh& carrier = quads->refined ? *quads->refined : *ground->carrier;
+    Result<QuadDomain> domain = make_domain(quads->complex, std::move(carrier), ground->corner);
     if (!domain)
         return domain.error();
+    if (Status lost = check_kept(*domain, source, options.constraints, ground->constraints))
+        return *lost;
     result.domain = std::move(*domain);
     return result;
 }

@@ -4,6 +4,7 @@
 #include "layout/curves.h"
 #include "layout/tiles.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -22,6 +23,11 @@ public:
     Index name(Index vertex) const { return name_[vertex]; }
     const std::vector<double>& density() const { return density_; } //!< As SizeField::density.
     const std::vector<Curve>& curves() const { return curves_; }
+
+    //! Names that must be sites, beside those on curves.
+    std::vector<Index> required;
+    //! Pairs of names whose tiles must not be neighbours.
+    std::vector<std::array<Index, 2>> apart;
 
     //! Makes patches small where curves are short: no wider than the distance between the ends of a
     //! curve, and growing with the distance from it no faster than a given slope. `unit` is the

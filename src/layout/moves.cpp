@@ -189,7 +189,7 @@ bool allowed(const ComplexState& state, const std::vector<Index>& faces,
              const std::vector<std::pair<Index, int>>& changes, bool same_edges)
 {
     for (const Index f : faces)
-        if (!state.complex.faces()[f].alive())
+        if (!state.complex.faces()[f].alive() || state.complex.faces()[f].frozen)
             return false;
     for (const auto& [v, by] : changes)
         if (by > 0 ? !state.valences.may_gain(v, by) : !state.valences.may_lose(v))
@@ -197,7 +197,8 @@ bool allowed(const ComplexState& state, const std::vector<Index>& faces,
     if (same_edges)
         return true;
     for (const auto& [a, b] : chords)
-        if (adjacent(state.complex, border[a], state.complex.start(border[b])))
+        if (adjacent(state.complex, border[a], state.complex.start(border[b])) ||
+            !state.complex.may_join(state.complex.start(border[a]), state.complex.start(border[b])))
             return false;
     return true;
 }

@@ -2,12 +2,14 @@
 #include "layout/pair_triangles.h"
 
 #include "core/parallel.h"
+#include "layout/curves.h"
 #include "layout/face_energy.h"
 #include "layout/pairing.h"
 #include "layout/valences.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -92,20 +94,64 @@ bool split_triangle(PatchComplex& complex, Index face, OverlayBuilder& builder)
 
 } // namespace
 
-Result<bool> pair_triangles(PatchComplex& complex, Context& context)
+namespace {
+
+// Leaves of the candidates what the wishes allow: of the two triangles of a wanted pair no other.
+void apply_wishes(const PatchComplex& complex, const PairingWishes& wishes, Candidates& candidates)
+{
+    std::vector<Index> only(complex.faces().size(), invalid_index); // Path to join over.
+    std::vector<char> never(complex.paths().size(), 0);
+    for (const auto& [a, b] : wishes.joined)
+        if (const auto p = complex.path_between(a, b))
+            only[complex.paths()[*p].left] = only[complex.paths()[*p].right] = *p;
+    for (const auto& [a, b] : wishes.parted)
+        if (const auto p = complex.path_between(a, b))
+            never[*p] = 1;
+    Candidates left;
+    for (std::size_t i = 0; i < candidates.pairs.size(); ++i) {
+        const PairCandidate& c = candidates.pairs[i];
+        const Index p = candidates.path[i];
+        const auto free = [&](Index face) {
+            return only[face] == invalid_index || only[face] == p;
+        };
+        if (never[p] || !free(c.face_a) || !free(c.face_b))
+            continue;
+        left.pairs.push_back(c);
+        left.path.push_back(p);
+    }
+    candidates = std::move(left);
+}
+
+bool is_wanted(const PairingWishes& wishes, const SurfacePath& path)
+{
+    return std::any_of(wishes.joined.begin(), wishes.joined.end(), [&path](const auto& pair) {
+        return std::minmax(pair.first, pair.second) == std::minmax(path.a, path.b);
+    });
+}
+
+} // namespace
+
+Result<bool> pair_triangles(PatchComplex& complex, const PairingWishes& wishes, Context& context)
 {
     for (int round = 0; round <= max_split_rounds; ++round) {
-        const auto candidates = find_candidates(complex, context);
+        auto candidates = find_candidates(complex, context);
         if (!candidates)
             return Context::cancelled_error("pairing");
+        apply_wishes(complex, wishes, *candidates);
         const Index count = static_cast<Index>(complex.faces().size());
         const auto chosen = match_faces(count, candidates->pairs, bottleneck_slack);
         if (chosen) {
             for (const Index c : *chosen) {
                 const PatchComplex::Path& path = complex.paths()[candidates->path[c]];
                 const std::vector<Index> faces{path.left, path.right};
-                complex.apply({faces, *complex.border(faces), {}, {}});
+                const bool frozen = is_wanted(wishes, path.geometry);
+                const Index quad = complex.apply({faces, *complex.border(faces), {}, {}});
+                if (frozen)
+                    complex.freeze(quad);
             }
+            for (const auto& [a, b] : wishes.parted)
+                if (const auto p = complex.path_between(a, b))
+                    complex.mark(*p, joint_mark);
             complex.compact();
             return true;
         }

@@ -20,7 +20,7 @@ Index PatchComplex::add_face(std::vector<Side> sides)
     const Index f = static_cast<Index>(faces_.size());
     for (const Side& s : sides)
         (s.reversed ? paths_[s.path].right : paths_[s.path].left) = f;
-    faces_.push_back({std::move(sides)});
+    faces_.push_back({std::move(sides), false});
     ++alive_faces_;
     return f;
 }
@@ -76,9 +76,20 @@ std::vector<Index> PatchComplex::faces_around(const Side& s) const
 
 bool PatchComplex::is_fixed_vertex(const Side& s) const
 {
+    if (pinned_.count(start(s)) != 0)
+        return true;
     const std::vector<Side> around = star(s);
     return std::any_of(around.begin(), around.end(),
                        [this](const Side& spoke) { return is_fixed(spoke.path); });
+}
+
+std::optional<Index> PatchComplex::path_between(Index a, Index b) const
+{
+    for (Index p = 0; p < paths_.size(); ++p)
+        if (paths_[p].alive &&
+            std::minmax(paths_[p].geometry.a, paths_[p].geometry.b) == std::minmax(a, b))
+            return p;
+    return std::nullopt;
 }
 
 std::vector<Index> PatchComplex::corners(Index face) const

@@ -4,7 +4,10 @@
 #include "layout/trace_faces.h"
 #include "maps/retile.h"
 
+#include <algorithm>
+#include <map>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -28,6 +31,7 @@ public:
     };
     struct Face {
         std::vector<Side> sides; //!< Counter-clockwise; empty when the face is gone.
+        bool frozen = false;     //!< No change may touch it.
         bool alive() const { return !sides.empty(); }
     };
     struct Path {
@@ -73,8 +77,19 @@ public:
         return paths_[path].left == invalid_index || paths_[path].right == invalid_index;
     }
     bool is_fixed(Index path) const { return paths_[path].mark != 0 || is_boundary(path); }
-    //! Whether a fixed path ends at the start of s.
+    //! Whether the start of s must stay: it is pinned, or a fixed path ends there.
     bool is_fixed_vertex(const Side& s) const;
+    //! Makes a mesh vertex one that no change moves or removes.
+    void pin(Index mesh_vertex) { pinned_.insert(mesh_vertex); }
+    //! From now on no change joins these mesh vertices.
+    void keep_apart(Index a, Index b) { apart_.insert(std::minmax(a, b)); }
+    bool may_join(Index a, Index b) const { return apart_.count(std::minmax(a, b)) == 0; }
+    //! Wanted number of faces of K at a mesh vertex inside; a hint.
+    void want(Index mesh_vertex, Index quads) { wanted_[mesh_vertex] = quads; }
+    const std::map<Index, Index>& wanted() const { return wanted_; }
+    void freeze(Index face) { faces_[face].frozen = true; }
+    //! A path between two mesh vertices, if there is one.
+    std::optional<Index> path_between(Index a, Index b) const;
     void mark(Index path, char mark) { paths_[path].mark = mark; }
     static Side opposite(const Side& s) { return {s.path, !s.reversed}; }
     //! Position of a side in its face.
@@ -119,6 +134,9 @@ private:
     std::vector<Face> faces_;
     std::vector<Path> paths_;
     Index alive_faces_ = 0;
+    std::set<Index> pinned_;
+    std::set<std::pair<Index, Index>> apart_;
+    std::map<Index, Index> wanted_;
 };
 
 } // namespace bot2nurbs

@@ -26,6 +26,11 @@ std::vector<Index> sites_on_curves(const LayoutLevel& level, double width)
         ++joining[ends(c)];
     std::vector<Index> names;
     for (const Curve& c : level.curves()) {
+        if (c.whole) {
+            names.push_back(c.vertices.front());
+            names.push_back(c.vertices.back());
+            continue;
+        }
         // Two edges of the domain must not join the same vertices.
         const std::size_t least = c.closed() ? least_closed : joining[ends(c)] > 1 ? 2 : 1;
         for (const std::size_t i :
@@ -108,6 +113,22 @@ std::vector<Index> first_sites(const LayoutLevel& level, const std::vector<Index
     return result;
 }
 
+// Vertices that part tiles which must not be neighbours.
+std::vector<Index> sites_to_keep_apart(const LayoutLevel& level, const Tiles& tiles)
+{
+    std::vector<Index> result;
+    for (const auto& [a, b] : level.apart)
+        level.for_each_copy(a, [&](Index va) {
+            level.for_each_copy(b, [&](Index vb) {
+                bool touching = false;
+                const Index v = tiles.between(va, vb, touching);
+                if (v != invalid_index)
+                    result.push_back(v);
+            });
+        });
+    return result;
+}
+
 } // namespace
 
 Index place_sites(const LayoutLevel& level, const SitePlan& plan, Tiles& tiles,
@@ -116,21 +137,35 @@ Index place_sites(const LayoutLevel& level, const SitePlan& plan, Tiles& tiles,
     std::vector<Index> sites;
     for (const Index name : sites_on_curves(level, plan.width))
         level.for_each_copy(name, [&sites](Index v) { sites.push_back(v); });
+    std::vector<Index> required;
+    for (const Index name : level.required)
+        level.for_each_copy(name, [&required](Index v) { required.push_back(v); });
+    tiles.fix(required);
+    sites.insert(sites.end(), required.begin(), required.end());
     std::sort(sites.begin(), sites.end());
-    const std::size_t on_curves = sites.size();
+    sites.erase(std::unique(sites.begin(), sites.end()), sites.end());
+    const std::size_t given = sites.size();
+    Index inner = plan.inner;
+    for (const Index s : required)
+        if (!level.mesh().is_boundary_vertex(s) && inner > 0)
+            --inner;
     if (plan.spread)
-        for (const Index v : spread_sites(level, plan.inner))
-            sites.push_back(v);
+        for (const Index v : spread_sites(level, inner))
+            if (!std::binary_search(sites.begin(),
+                                    sites.begin() + static_cast<std::ptrdiff_t>(given), v))
+                sites.push_back(v);
     for (const Index v : first_sites(level, sites))
         sites.push_back(v);
     tiles.grow(sites);
     if (!plan.spread)
-        tiles.add_farthest(static_cast<Index>(on_curves) + plan.inner);
+        tiles.add_farthest(static_cast<Index>(given) + inner);
     for (int round = 0; round < plan.relaxations && !context.cancelled(); ++round)
         tiles.relax();
     const std::size_t before = tiles.sites().size();
     while (!context.cancelled()) {
         std::vector<Index> missing = tiles.violations();
+        if (missing.empty() && plan.keep_apart)
+            missing = sites_to_keep_apart(level, tiles);
         if (missing.empty() && plan.even_regions)
             missing = sites_for_even_regions(level, tiles);
         if (missing.empty())

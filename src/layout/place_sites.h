@@ -13,6 +13,8 @@ struct SitePlan {
     bool spread = false; //!< Spread the inner sites in one sweep, for many; otherwise one by one,
                          //!< each farthest from all others.
     int relaxations = 0; //!< Rounds of Lloyd's relaxation.
+    bool keep_apart =
+        false; //!< Separates tiles that LayoutLevel::apart says must not be neighbours.
     bool even_regions = false; //!< Every region gets an even number of sites on its boundary, if
                                //!< its curves can be divided further: so that it has an even
                                //!< number of triangles.

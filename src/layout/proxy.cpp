@@ -66,7 +66,7 @@ Result<Proxy> Proxy::build(const LayoutLevel& fine, double width, Context& conte
     for (Index v = 0; v < fine.mesh().vertex_count(); ++v)
         name_count = std::max(name_count, fine.name(v) + 1);
     for (const Curve& curve : fine.curves()) {
-        Curve coarse{curve.kind, {}};
+        Curve coarse{curve.kind, curve.whole, {}};
         for (const Index n : curve.vertices)
             if (number[fine.any_copy(n)] != invalid_index)
                 coarse.vertices.push_back(n);
@@ -74,6 +74,8 @@ Result<Proxy> Proxy::build(const LayoutLevel& fine, double width, Context& conte
     }
     proxy.level_ = std::make_unique<LayoutLevel>(*proxy.mesh_, std::move(name), name_count,
                                                  std::move(density), std::move(curves));
+    proxy.level_->required = fine.required;
+    proxy.level_->apart = fine.apart;
     return proxy;
 }
 

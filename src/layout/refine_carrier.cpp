@@ -35,7 +35,8 @@ public:
             const Index f = pieces[i];
             int side[3];
             for (Index k = 0; k < 3; ++k)
-                side[k] = orient2d(place(3 * f + k, point.face), place(next(3 * f + k), point.face), p);
+                side[k] =
+                    orient2d(place(3 * f + k, point.face), place(next(3 * f + k), point.face), p);
             if (std::min({side[0], side[1], side[2]}) < 0)
                 continue;
             const auto on = std::count(side, side + 3, 0);

@@ -19,13 +19,13 @@ struct CarrierPlan {
 
 struct PlannedCarrier {
     CarrierMesh carrier;
-    std::vector<char> marks;          //!< Per halfedge: both parts of a split edge have its mark.
+    std::vector<char> marks;           //!< Per halfedge: both parts of a split edge have its mark.
     std::vector<Index> point_vertices; //!< Per point of the plan.
 };
 
-//! The source mesh with vertices at the given points, then with every edge longer than the limit split
-//! in the middle, longest first, until none is. Faces keep their source face and vertices their exact
-//! weights in it; the surface is the same. Cost O(n log n).
+//! The source mesh with vertices at the given points, then with every edge longer than the limit
+//! split in the middle, longest first, until none is. Faces keep their source face and vertices
+//! their exact weights in it; the surface is the same. Cost O(n log n).
 PlannedCarrier refine_carrier(const ManifoldMesh& source, CarrierPlan plan);
 
 } // namespace bot2nurbs

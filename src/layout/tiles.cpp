@@ -41,6 +41,7 @@ Tiles::Tiles(const ManifoldMesh& mesh, std::vector<double> density)
 {
     for (Index v = 0; v < mesh.vertex_count(); ++v)
         on_boundary_[v] = mesh.is_boundary_vertex(v);
+    fixed_ = on_boundary_;
     for (Index f = 0; f < mesh.face_count(); ++f) {
         const double third = norm(mesh.area_vector(f)) / 6.0;
         for (const Index v : mesh.triangle(f))
@@ -152,7 +153,7 @@ void Tiles::relax()
         centroid[i] = weight[i] > 0.0 ? centroid[i] / weight[i] : mesh_.position(sites_[i]);
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {
         const Index i = label_[v];
-        if (on_boundary_[sites_[i]])
+        if (fixed_[sites_[i]])
             continue;
         const double d = norm_squared(mesh_.position(v) - centroid[i]);
         if (d < best_distance[i]) {
@@ -161,6 +162,27 @@ void Tiles::relax()
         }
     }
     grow(best);
+}
+
+void Tiles::fix(const std::vector<Index>& vertices)
+{
+    for (const Index v : vertices)
+        fixed_[v] = 1;
+}
+
+Index Tiles::between(Index site_a, Index site_b, bool& touching) const
+{
+    const Index a = label_[site_a], b = label_[site_b];
+    Index best = invalid_index;
+    touching = false;
+    for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
+        const Index v = mesh_.from(h), w = mesh_.to(h);
+        if ((label_[v] == a && label_[w] == b) || (label_[v] == b && label_[w] == a)) {
+            touching = true;
+            best = farther(farther(best, v), w);
+        }
+    }
+    return best != invalid_index && sites_[label_[best]] == best ? invalid_index : best;
 }
 
 void Tiles::list_members(std::vector<Index>& offset, std::vector<Index>& members) const

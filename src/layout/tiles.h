@@ -22,6 +22,12 @@ class Tiles {
 public:
     Tiles(const ManifoldMesh& mesh, std::vector<double> density);
 
+    //! Sites at these vertices stay where they are when others are relaxed.
+    void fix(const std::vector<Index>& vertices);
+    //! The vertex farthest from its site at the cut between the tiles of two sites, itself no site;
+    //! invalid_index when they have no cut or no such vertex. `touching` tells which.
+    Index between(Index site_a, Index site_b, bool& touching) const;
+
     const ManifoldMesh& mesh() const { return mesh_; }
     const std::vector<Index>& sites() const { return sites_; }  //!< Per tile: its mesh vertex.
     const std::vector<Index>& labels() const { return label_; } //!< Per mesh vertex: its tile.
@@ -66,6 +72,7 @@ private:
     std::vector<double> density_;
     std::vector<double> area_;      // Per vertex: a third of the faces around.
     std::vector<char> on_boundary_; // Per vertex.
+    std::vector<char> fixed_;       // Per vertex: a site there does not move.
     std::vector<Index> sites_;
     std::vector<Index> label_;
     std::vector<double> distance_;

@@ -38,7 +38,8 @@ double boundary_angle(const ManifoldMesh& mesh, Index v)
 } // namespace
 
 Valences::Valences(const PatchComplex& complex, Index sides)
-    : sides_(sides), most_(sides == 3 ? max_triangle_valence : max_quad_valence),
+    : sides_(sides), asked_(complex.wanted()),
+      most_(sides == 3 ? max_triangle_valence : max_quad_valence),
       count_(complex.mesh().vertex_count(), 0), angle_(complex.mesh().vertex_count(), 0.0)
 {
     constexpr double pi = 3.14159265358979323846;

@@ -4,6 +4,7 @@
 #include "layout/patch_complex.h"
 
 #include <algorithm>
+#include <map>
 #include <vector>
 
 namespace bot2nurbs {
@@ -47,6 +48,9 @@ private:
     double wanted(Index vertex) const
     {
         const double inside = sides_ == 3 ? 6.0 : 4.0;
+        const auto asked = asked_.find(vertex);
+        if (asked != asked_.end())
+            return asked->second * inside / 4.0;
         return angle_[vertex] > 0.0 ? 1.0 + std::max(1.0, angle_[vertex]) : inside;
     }
     int least(Index vertex) const
@@ -56,6 +60,7 @@ private:
     }
 
     Index sides_;
+    std::map<Index, Index> asked_; // Quads wanted at single vertices.
     int most_;
     std::vector<int> count_;    // Per mesh vertex.
     std::vector<double> angle_; // Per mesh vertex: at the boundary, in units of a face's; else 0.

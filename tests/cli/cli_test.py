@@ -240,12 +240,12 @@ class BadInput(CliTest):
             self.assertIn("finite", run.stderr)
             self.assertFalse((self.folder / "a.3dm").exists())
 
-    def test_an_open_mesh_is_refused_by_name(self):
+    def test_an_open_mesh_is_no_solid(self):
         vertices, faces = read_obj(SPHERE)
         mesh = self.write("a.off", off(vertices, faces[1:]))
-        run = self.assert_refused(5, "1 boundary loop", mesh, "a.3dm")
+        run = self.assert_refused(5, "1 boundary loop", mesh, "a.3dm", "--solid")
         self.assertIn("vertex", run.stderr)
-        self.assertIn("not supported yet", run.stderr)
+        self.assertIn("leave out --solid", run.stderr)
 
     def test_a_closed_mesh_without_volume_is_rejected(self):
         vertices, faces = read_obj(SPHERE)
@@ -288,7 +288,7 @@ class BadInput(CliTest):
     def test_the_report_tells_of_the_failure(self):
         vertices, faces = read_obj(SPHERE)
         mesh = self.write("a.off", off(vertices, faces[1:]))
-        run = self.run_command(mesh, "a.3dm", "--json", "-")
+        run = self.run_command(mesh, "a.3dm", "--solid", "--json", "-")
         self.assertEqual(run.returncode, 5)
         report = json.loads(run.stdout)
         rules = json.loads((ROOT / "docs/schema/report.schema.json").read_text())
@@ -312,6 +312,53 @@ class BadInput(CliTest):
         self.assertIn("warning:", run.stderr)
 
 
+class Constraints(CliTest):
+    def constraints(self):
+        return json.loads((self.folder / "c.json").read_text())
+
+    def test_what_a_run_writes_gives_a_domain_with_the_same_vertices(self):
+        run = self.run_command(SPHERE, "--constraints-out", "c.json", "--domain-out", "d.json")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        rules = json.loads((ROOT / "docs/schema/constraints.schema.json").read_text())
+        self.assertEqual(schema.errors(self.constraints(), rules), [])
+        run = self.run_command(SPHERE, "a.3dm", "--constraints", "c.json", "--domain-out", "e.json")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        before, after = (
+            json.loads((self.folder / name).read_text())["components"][0]
+            for name in ("d.json", "e.json")
+        )
+        self.assertLessEqual(len(before["vertices"]), len(after["vertices"]))
+        wanted = [s["vertex"] for s in self.constraints()["sites"] if "vertex" in s]
+        for v in wanted:
+            self.assertIn(v, after["vertices"])
+
+    def test_a_conflict_names_the_items_and_writes_nothing(self):
+        self.run_command(SPHERE, "--constraints-out", "c.json")
+        c = self.constraints()
+        for crossing in ([0, 1], [1, 0]):
+            c["pairings"] = [{"demand": "required", "sites": [0, 1]}]
+            c["adjacencies"] = [{"demand": "forbidden", "sites": crossing}]
+            self.write("c.json", json.dumps(c))
+            run = self.assert_refused(5, "pairing 0", SPHERE, "a.3dm", "--constraints", "c.json")
+            self.assertIn("adjacency 0", run.stderr)
+
+    def test_constraints_of_another_mesh_are_refused(self):
+        self.run_command(SPHERE, "--constraints-out", "c.json")
+        self.assert_refused(5, "signature", str(EXAMPLES / "torso.off"), "a.3dm",
+                            "--constraints", "c.json")
+
+    def test_a_constraint_that_is_misspelt_is_refused_by_pointer(self):
+        self.run_command(SPHERE, "--constraints-out", "c.json")
+        c = self.constraints()
+        c["sites"][3] = {"vertx": 7}
+        self.write("c.json", json.dumps(c))
+        self.assert_refused(5, "/sites/3", SPHERE, "a.3dm", "--constraints", "c.json")
+
+    def test_a_domain_and_constraints_contradict_each_other(self):
+        self.assert_refused(2, "--constraints", SPHERE, "a.3dm", "--constraints", "c.json",
+                            "--domain-in", "d.json")
+
+
 class Check(CliTest):
     def test_a_good_mesh_is_accepted_on_stdout(self):
         run = self.run_command("--check", SPHERE, "--quiet")
@@ -321,7 +368,7 @@ class Check(CliTest):
     def test_a_bad_mesh_is_rejected_with_its_defects(self):
         vertices, faces = read_obj(SPHERE)
         mesh = self.write("a.off", off(vertices, faces[1:]))
-        run = self.run_command("--check", mesh, "--json", "-")
+        run = self.run_command("--check", mesh, "--solid", "--json", "-")
         self.assertEqual(run.returncode, 5)
         report = json.loads(run.stdout)
         self.assertEqual(report["schema"], "bot2nurbs.check/1")

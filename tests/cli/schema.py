@@ -5,7 +5,7 @@ import re
 
 KEYWORDS = {
     "$schema", "$id", "$defs", "$ref", "title", "description", "type", "const", "enum", "required",
-    "properties", "additionalProperties", "items", "minItems", "maxItems", "minimum", "maximum",
+    "properties", "additionalProperties", "items", "prefixItems", "minItems", "maxItems", "minimum", "maximum",
     "pattern", "oneOf", "propertyNames", "exclusiveMinimum", "exclusiveMaximum",
 }
 
@@ -59,8 +59,11 @@ def errors(value, schema, root=None, where="$"):
     if isinstance(value, list):
         if not schema.get("minItems", 0) <= len(value) <= schema.get("maxItems", len(value)):
             found.append(f"{where}: has {len(value)} items")
+        first = schema.get("prefixItems", [])
+        for i, (part, rules) in enumerate(zip(value, first)):
+            found += errors(part, rules, root, f"{where}[{i}]")
         if "items" in schema:
-            for i, part in enumerate(value):
+            for i, part in enumerate(value[len(first):], len(first)):
                 found += errors(part, schema["items"], root, f"{where}[{i}]")
     if TYPES["number"](value):
         if "minimum" in schema and value < schema["minimum"]:

@@ -127,7 +127,7 @@ TEST(QuadLayout, pairs_every_triangle_and_stays_sound_through_improvement)
         PatchComplex complex = base_complex(mesh, std::min<Index>(24, mesh.vertex_count()));
         const Index triangles = complex.face_count();
         Context context;
-        const auto paired = pair_triangles(complex, context);
+        const auto paired = pair_triangles(complex, {}, context);
         ASSERT_TRUE(paired.ok() && *paired) << name;
         EXPECT_EQ(2 * complex.face_count(), triangles) << name;
         expect_sound(complex, 4, name + " paired");
@@ -142,7 +142,7 @@ TEST(QuadLayout, improvement_lowers_distortion_and_leaves_few_extraordinary_vert
     const ManifoldMesh mesh = icosphere(4);
     PatchComplex complex = base_complex(mesh, 80);
     Context context;
-    ASSERT_TRUE(*pair_triangles(complex, context));
+    ASSERT_TRUE(*pair_triangles(complex, {}, context));
     const auto mean_distortion = [&complex, &mesh] {
         OverlayBuilder builder(mesh);
         double sum = 0.0;

@@ -11,8 +11,10 @@ namespace {
 
 CarrierMesh refined(const ManifoldMesh& mesh, double limit, std::size_t most)
 {
-    return refine_carrier(mesh, {std::vector<double>(mesh.vertex_count(), limit), most,
-                                 std::vector<char>(mesh.halfedge_count(), 0), {}})
+    return refine_carrier(mesh, {std::vector<double>(mesh.vertex_count(), limit),
+                                 most,
+                                 std::vector<char>(mesh.halfedge_count(), 0),
+                                 {}})
         .carrier;
 }
 
@@ -67,8 +69,8 @@ TEST(RefineCarrier, marks_both_halves_of_a_marked_edge_and_nothing_else)
             marks[h] = 1;
             length += norm(mesh.position(mesh.to(h)) - mesh.position(mesh.from(h)));
         }
-    const PlannedCarrier planned = refine_carrier(
-        mesh, {std::vector<double>(mesh.vertex_count(), 0.07), 1000000, marks, {}});
+    const PlannedCarrier planned =
+        refine_carrier(mesh, {std::vector<double>(mesh.vertex_count(), 0.07), 1000000, marks, {}});
     const ManifoldMesh& fine = planned.carrier.mesh;
     marks = planned.marks;
     ASSERT_EQ(marks.size(), fine.halfedge_count());
@@ -87,7 +89,8 @@ TEST(RefineCarrier, marks_both_halves_of_a_marked_edge_and_nothing_else)
 TEST(RefineCarrier, makes_points_vertices_wherever_they_are)
 {
     const ManifoldMesh mesh = icosphere(1);
-    // Inside a face, twice in the same one, in an edge (and seen from the face across), at a corner.
+    // Inside a face, twice in the same one, in an edge (and seen from the face across), at a
+    // corner.
     const Index across = ManifoldMesh::face(mesh.twin(3 * 7));
     std::array<double, 3> there{};
     for (int k = 0; k < 3; ++k)
