@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace bot2nurbs::cli {
@@ -47,6 +48,25 @@ template <class T> CLI::Option* add_choice(CLI::App& app, const std::string& nam
             name, [&value, &choices](const std::string& chosen) { value = choices.at(chosen); },
             text)
         ->check(CLI::IsMember(names));
+}
+
+const std::map<std::string, ComponentMode> component_modes{{"all", ComponentMode::all},
+                                                           {"largest", ComponentMode::largest},
+                                                           {"split", ComponentMode::split}};
+
+// Nothing for what is neither a length nor a percentage.
+std::optional<Length> parse_length(std::string text)
+{
+    Length length;
+    if (!text.empty() && text.back() == '%') {
+        length.relative = true;
+        text.pop_back();
+    }
+    if (!CLI::detail::lexical_cast(text, length.value))
+        return std::nullopt;
+    if (length.relative)
+        length.value /= 100.0;
+    return length;
 }
 
 // False for what is neither a word nor an angle.
@@ -114,6 +134,18 @@ std::variant<Command, int> parse_command(int argc, char** argv)
         app.add_flag("--open", "Open meshes become open surfaces, without a warning")->group(input);
     CLI::Option* solid =
         app.add_flag("--solid", "Reject open meshes")->excludes(open)->group(input);
+    std::string fill_holes;
+    CLI::Option* fill_holes_option =
+        app.add_option("--fill-holes", fill_holes,
+                       "Fill holes up to this size across: a length in units of INPUT, or a "
+                       "percentage of its diagonal")
+            ->type_name("0.5|2%")
+            ->group(input);
+    add_choice(app, "--components", o.components, component_modes,
+               "Convert all components, or only the largest, or split them into files of their own "
+               "(default: all)")
+        ->type_name("all|largest|split")
+        ->group(input);
     CLI::Option* check =
         app.add_flag("--check", "Report the defects of INPUT and convert nothing")->group(input);
     app.add_flag("--strict", o.strict, "Reject input that crosses itself")->group(input);
@@ -202,6 +234,15 @@ std::variant<Command, int> parse_command(int argc, char** argv)
             "degrees\n",
             features.c_str());
         return exit_code(ErrorCode::bad_option);
+    }
+    if (*fill_holes_option) {
+        o.fill_holes = parse_length(fill_holes);
+        if (!o.fill_holes || !(o.fill_holes->value >= 0.0)) {
+            std::fprintf(stderr,
+                         "bot2nurbs: --fill-holes %s is neither a length nor a percentage\n",
+                         fill_holes.c_str());
+            return exit_code(ErrorCode::bad_option);
+        }
     }
     if (*patches_option)
         o.patches = patches;

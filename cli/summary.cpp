@@ -46,9 +46,16 @@ std::string verdict(const std::optional<Error>& rejection)
 std::string error_text(const Deviation& d, double diagonal, const std::string& unit)
 {
     const double percent = diagonal > 0.0 ? 100.0 / diagonal : 0.0;
-    return fmt::format("rms {:.3g} %, max {:.3g} % of the diagonal (rms {:.3g} {}, max {:.3g} {}; "
-                       "sampled both ways)",
+    return fmt::format("rms {:.3g} %, max {:.3g} % of the diagonal (rms {:.3g} {}, max {:.3g} {})",
                        percent * d.rms(), percent * d.max(), d.rms(), unit, d.max(), unit);
+}
+
+std::string bound_text(const HausdorffBound& b, double diagonal, const std::string& unit)
+{
+    const double percent = diagonal > 0.0 ? 100.0 / diagonal : 0.0;
+    return fmt::format("no place of either is farther than {:.3g} % from the other ({:.3g} {}), "
+                       "one is farther than {:.3g} %",
+                       percent * b.upper(), b.upper(), unit, percent * b.lower());
 }
 
 std::vector<std::string> component_lines(const ComponentOutcome& c, const std::string& unit)
@@ -62,6 +69,8 @@ std::vector<std::string> component_lines(const ComponentOutcome& c, const std::s
     if (c.brep_faces == 0)
         return lines;
     lines.push_back("error     " + error_text(c.deviation, c.diagonal, unit));
+    if (c.bound)
+        lines.push_back("bound     " + bound_text(*c.bound, c.diagonal, unit));
     lines.push_back(fmt::format("joins     largest gap {:.2g} {}, largest angle between normals "
                                 "{:.2g} degrees",
                                 c.continuity.max_gap, unit, c.continuity.max_g1_angle_deg));

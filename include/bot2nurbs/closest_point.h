@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "bot2nurbs/context.h"
 #include "bot2nurbs/manifold_mesh.h"
 
 #include <array>
@@ -12,13 +13,15 @@ namespace bot2nurbs {
 //! Closest points on the surface of a mesh, over a box tree of its triangles.
 //!
 //! Keeps what it needs of the mesh. Queries cost O(log F) in practice and may run on many threads
-//! at once. Building costs O(F log F).
+//! at once. Building costs O(F log F); when the given context is cancelled meanwhile, nothing will
+//! be found.
 class ClosestPoint {
 public:
-    explicit ClosestPoint(const ManifoldMesh& mesh);
+    explicit ClosestPoint(const ManifoldMesh& mesh, const Context* context = nullptr);
     //! Over triangles that need not be joined.
     ClosestPoint(const std::vector<Vec3>& positions,
-                 const std::vector<std::array<Index, 3>>& triangles);
+                 const std::vector<std::array<Index, 3>>& triangles,
+                 const Context* context = nullptr);
 
     struct Hit {
         SourcePoint where; //!< where.face is invalid_index when nothing lies within the limit.
@@ -30,6 +33,8 @@ public:
     Hit query(const Vec3& p) const;
     //! The closest point at most `distance_limit` away. Faster the smaller the limit.
     Hit query(const Vec3& p, double distance_limit) const;
+    //! All triangles that come within `distance` of p, and others near it, in no useful order.
+    std::vector<Index> faces_near(const Vec3& p, double distance) const;
 
 private:
     struct Tree;

@@ -25,6 +25,22 @@ enum class FeatureMode {
     all,       //!< All creases of the angle asked for.
 };
 
+//! A length as people give it.
+struct Length {
+    double value = 0.0;    //!< In units of the input, or as a share.
+    bool relative = false; //!< A share of the diagonal of the box of the whole input.
+
+    //! In units of an input whose box has this diagonal.
+    double of(double diagonal) const { return relative ? value * diagonal : value; }
+};
+
+//! What becomes of the connected components of the input.
+enum class ComponentMode {
+    all,     //!< Each is a B-Rep of its own, all in one file.
+    largest, //!< Only the one with the largest area is converted.
+    split,   //!< As all, in files of their own: part.3dm becomes part-1.3dm, part-2.3dm, ...
+};
+
 //! Whether the result must be closed.
 enum class Closure {
     as_input, //!< Solids of closed components, open surfaces of open ones.
@@ -51,6 +67,10 @@ struct ConvertOptions {
     //! How creases are found. With FeatureMode::all its least_clear_share counts as 0.
     FeatureOptions feature_options;
     Closure closure = Closure::as_input;
+
+    ComponentMode components = ComponentMode::all;
+    //! Holes up to this size, the diagonal of their box, are filled before anything else; >= 0.
+    std::optional<Length> fill_holes;
 
     bool repair = true;  //!< Make harmless repairs; false: reject an input that needs any.
     bool strict = false; //!< Reject self-intersecting input instead of warning.

@@ -13,8 +13,10 @@ struct DistanceStatistics {
     Vec3 worst; //!< Where the largest distance was found, on the side it was measured from.
 };
 
-//! Two-sided distance between a mesh and a spline surface from dense sampling: a lower bound of the
-//! Hausdorff distance, labelled as sampled in reports.
+//! Two-sided distance between a mesh and a spline surface from samples spread evenly over both.
+//! Made for the root mean squares: the largest distance between samples can be missed, and the
+//! search for the nearest place of the surface is local. bound_hausdorff() finds and proves the
+//! largest.
 struct Deviation {
     DistanceStatistics source_to_surface, surface_to_source;
     Index worst_patch = invalid_index; //!< Patch with the largest surface-to-source distance.

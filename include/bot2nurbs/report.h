@@ -2,8 +2,10 @@
 #pragma once
 
 #include "bot2nurbs/brep.h"
+#include "bot2nurbs/curve_deviation.h"
 #include "bot2nurbs/deviation.h"
 #include "bot2nurbs/fit_network.h"
+#include "bot2nurbs/hausdorff_bound.h"
 #include "bot2nurbs/layout.h"
 #include "bot2nurbs/layout_quality.h"
 #include "bot2nurbs/repair_mesh.h"
@@ -59,6 +61,8 @@ struct ComponentOutcome {
     LayoutQuality quality;               //!< Of the domain.
     FitSummary fit;                      //!< Distances in units of the input.
     Deviation deviation;                 //!< In units of the input.
+    std::optional<HausdorffBound> bound; //!< Of the surface as written against the input.
+    CurveDeviations curves;              //!< In units of the input.
     Continuity continuity;               //!< Of the surface as written.
     BrepReport brep;
     Index brep_faces = 0, brep_edges = 0, brep_vertices = 0;
@@ -82,6 +86,9 @@ struct ConvertReport {
 
     //! Largest distances over all components, mean squares pooled by their samples.
     Deviation deviation() const;
+    //! Proven bounds of the largest distance of any component from its surface; nothing unless
+    //! there are bounds for all.
+    std::optional<DistanceBounds> distance() const;
     bool valid() const; //!< All B-Reps are; false when none was made.
     bool solid() const; //!< All B-Reps are; false when none was made.
 };

@@ -21,8 +21,10 @@ struct SparseRows {
 
 //! Which spline space a network uses.
 enum class SplineScheme {
-    peters,    //!< C1 inside every macro patch, exact G1 across edges; the default.
+    peters,    //!< Biquadratic away from vertices, 16 unknowns a quad; C1 inside every patch.
     eck_hoppe, //!< The masks of Eck and Hoppe 1996; closed smooth domains only.
+    full,      //!< All bicubic patches with the joins of peters, about 60 unknowns a quad: closer
+               //!< to dense data with fewer patches. Contains peters.
 };
 
 //! A spline space over a quadrilateral domain, as data: every Bezier coefficient of every patch is
@@ -40,6 +42,9 @@ struct SplineNetwork {
         is_point;        //!< Per unknown: 1 affine weight one (a point), 0 weight zero (a vector).
     SparseRows stencils; //!< 169 rows per quad.
     SparseRows constraints; //!< Rows that must vanish on the unknowns; disjoint supports.
+    //! Per unknown: how it follows from the Bezier coefficients (columns: stencil rows) of any
+    //! surface of this space. No rows for schemes whose unknowns are not read back.
+    SparseRows recovery;
     bool c1_inside =
         true; //!< True: the 10 x 10 form with double knots represents the patches exactly.
 
@@ -50,6 +55,15 @@ struct SplineNetwork {
 //! Builds the network of a scheme. Errors: invalid_domain (a valence below 3 inside, or a domain
 //! the scheme does not cover), naming the vertex. \cite peters_1994 \cite eck_hoppe_1996
 Result<SplineNetwork> build_spline_network(const QuadComplex& complex, SplineScheme scheme);
+
+class SplineSurface;
+
+//! The unknowns of a surface in the space of a network: those the network was fitted with, or, for
+//! SplineScheme::full, those of any surface that a network of SplineScheme::peters gives over the
+//! same complex. They give the surface back to rounding. Cost linear.
+//! Errors: invalid_domain (not as many patches as quads), bad_option (the scheme cannot do this).
+Result<std::vector<Vec3>> recover_unknowns(const SplineNetwork& network,
+                                           const SplineSurface& surface);
 
 //! Position and derivatives of a surface at one parameter, with respect to u, v in [0, 1].
 struct SurfacePoint {

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 namespace bot2nurbs {
@@ -19,16 +18,10 @@ namespace {
 //! whole under half a second on one core; two or three times as many changed root mean squares by
 //! less than half a percent.
 constexpr std::size_t face_samples = 60000;
-constexpr std::size_t most_vertices = 250000;
 constexpr std::size_t surface_samples = 40000;
 //! Midpoints per Bezier piece and direction: a bicubic piece bends too little for more than the
 //! upper bound to show anything new, and fewer than the lower bound could miss a wiggle.
 constexpr Index least_side = 3, most_side = 16;
-//! The largest distance asks for denser places than a mean does, but only where distances are
-//! large: this many Bezier pieces with the largest distances are measured again on a finer grid,
-//! whose spacing of a 24th misses about two thousandths of a bump as wide as the piece.
-constexpr std::size_t refined_pieces = 48;
-constexpr Index refined_side = 24;
 //! Cells per Bezier piece that seed the search for a foot on the surface.
 constexpr Index seed_cells = 2;
 constexpr std::size_t chunk_places = 128;
@@ -51,15 +44,11 @@ double fraction(double x)
     return x - std::floor(x);
 }
 
-//! All vertices (evenly thinned above the cap), then points spread evenly by area.
+//! Points spread evenly by area.
 std::vector<Place> source_places(const ManifoldMesh& source)
 {
     std::vector<Place> places;
-    const std::size_t vertices = source.vertex_count(), kept = std::min(vertices, most_vertices);
-    places.reserve(kept + face_samples);
-    for (std::size_t i = 0; i < kept; ++i)
-        places.push_back(
-            {source.position(static_cast<Index>(i * vertices / kept)), 0.0, invalid_index});
+    places.reserve(face_samples);
     double total = 0.0;
     for (Index f = 0; f < source.face_count(); ++f)
         total += 0.5 * norm(source.area_vector(f));
@@ -91,9 +80,8 @@ double piece_area(const SplineSurface& surface, Index piece)
     return norm(cross(s.du, s.dv)) / pieces_per_quad;
 }
 
-//! Adds the midpoints of n x n cells of a Bezier piece, with their areas as weights or with none.
-void add_midpoints(const SplineSurface& surface, Index piece, Index n, bool weighted,
-                   std::vector<Place>& places)
+//! Adds the midpoints of n x n cells of a Bezier piece, with their areas as weights.
+void add_midpoints(const SplineSurface& surface, Index piece, Index n, std::vector<Place>& places)
 {
     const Index q = piece / pieces_per_quad, a = piece % pieces_per_quad / pieces_per_side,
                 b = piece % pieces_per_side;
@@ -101,8 +89,8 @@ void add_midpoints(const SplineSurface& surface, Index piece, Index n, bool weig
         for (Index j = 0; j < n; ++j) {
             const SurfacePoint s = surface.evaluate(
                 {q, (a + (i + 0.5) / n) / pieces_per_side, (b + (j + 0.5) / n) / pieces_per_side});
-            const double area = norm(cross(s.du, s.dv)) / (pieces_per_quad * n * n);
-            places.push_back({s.position, weighted ? area : 0.0, piece});
+            places.push_back(
+                {s.position, norm(cross(s.du, s.dv)) / (pieces_per_quad * n * n), piece});
         }
 }
 
@@ -119,7 +107,7 @@ std::vector<Place> surface_places(const SplineSurface& surface)
         const double wanted = total > 0.0 ? std::sqrt(surface_samples * area[p] / total) : 0.0;
         add_midpoints(
             surface, p,
-            static_cast<Index>(std::clamp<double>(std::ceil(wanted), least_side, most_side)), true,
+            static_cast<Index>(std::clamp<double>(std::ceil(wanted), least_side, most_side)),
             places);
     }
     constexpr Index last = pieces_per_side - 1;
@@ -129,28 +117,6 @@ std::vector<Place> surface_places(const SplineSurface& surface)
                 places.push_back({surface.position({q, a > 0 ? 1.0 : 0.0, b > 0 ? 1.0 : 0.0}), 0.0,
                                   q * pieces_per_quad + a * pieces_per_side + b});
     return places;
-}
-
-//! A finer grid on the pieces with the largest distances.
-std::vector<Place> refined_places(const SplineSurface& surface, const std::vector<Place>& places,
-                                  const std::vector<double>& distances)
-{
-    const Index pieces = surface.patch_count() * pieces_per_quad;
-    std::vector<double> largest(pieces, 0.0);
-    for (std::size_t i = 0; i < places.size(); ++i)
-        largest[places[i].piece] = std::max(largest[places[i].piece], distances[i]);
-    std::vector<Index> order(pieces);
-    std::iota(order.begin(), order.end(), Index{0});
-    const std::size_t kept = std::min<std::size_t>(pieces, refined_pieces);
-    std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(kept), order.end(),
-                      [&](Index a, Index b) {
-                          return largest[a] != largest[b] ? largest[a] > largest[b] : a < b;
-                      });
-    std::vector<Place> refined;
-    refined.reserve(kept * refined_side * refined_side);
-    for (std::size_t i = 0; i < kept; ++i)
-        add_midpoints(surface, order[i], refined_side, false, refined);
-    return refined;
 }
 
 //! distance(position) of all places. \return nothing when cancelled.
@@ -195,7 +161,9 @@ Result<Deviation> measure_deviation(const ManifoldMesh& source, const QuadComple
         return Error{ErrorCode::empty_input, "nothing to measure a deviation of", invalid_index};
     Deviation deviation;
     {
-        const SurfaceLocator locator(complex, surface, seed_cells);
+        const SurfaceLocator locator(complex, surface, seed_cells, &context);
+        if (context.cancelled())
+            return Context::cancelled_error("deviation");
         const std::vector<Place> places = source_places(source);
         const auto distances =
             measure(places, context, [&](const Vec3& p) { return locator.closest(p).distance; });
@@ -203,18 +171,12 @@ Result<Deviation> measure_deviation(const ManifoldMesh& source, const QuadComple
             return Context::cancelled_error("deviation");
         summarise(places, *distances, deviation.source_to_surface);
     }
-    const ClosestPoint mesh(source);
+    const ClosestPoint mesh(source, &context);
     const auto to_source = [&](const Vec3& p) { return mesh.query(p).distance; };
-    std::vector<Place> places = surface_places(surface);
-    auto distances = measure(places, context, to_source);
+    const std::vector<Place> places = surface_places(surface);
+    const auto distances = measure(places, context, to_source);
     if (!distances)
         return Context::cancelled_error("deviation");
-    const std::vector<Place> refined = refined_places(surface, places, *distances);
-    const auto more = measure(refined, context, to_source);
-    if (!more)
-        return Context::cancelled_error("deviation");
-    places.insert(places.end(), refined.begin(), refined.end());
-    distances->insert(distances->end(), more->begin(), more->end());
     deviation.worst_patch =
         summarise(places, *distances, deviation.surface_to_source).piece / pieces_per_quad;
     return deviation;

@@ -116,6 +116,27 @@ void to_input_units(DistanceStatistics& s, const Frame& frame)
     s.worst = frame.from_unit(s.worst);
 }
 
+//! The largest distances are those proven to be attained. Distances of samples from the mesh are
+//! exact too, and may be larger on the side that is less far, whose bounds are loose; those from
+//! the surface are what a local search ended with.
+void use_proven(Deviation& sampled, const HausdorffBound& proven)
+{
+    sampled.source_to_surface.max = proven.source_to_surface.lower;
+    sampled.source_to_surface.worst = proven.source_to_surface.worst.point;
+    if (proven.surface_to_source.lower > sampled.surface_to_source.max) {
+        sampled.surface_to_source.max = proven.surface_to_source.lower;
+        sampled.surface_to_source.worst = proven.surface_to_source.worst.point;
+        sampled.worst_patch = proven.surface_to_source.worst.surface.quad;
+    }
+}
+
+void to_input_units(CurveDeviation& c, const Frame& frame)
+{
+    c.length *= frame.size;
+    to_input_units(c.source_to_surface, frame);
+    to_input_units(c.surface_to_source, frame);
+}
+
 void to_input_units(FitSummary& fit, const Frame& frame)
 {
     for (FitRound& round : fit.rounds) {
@@ -228,10 +249,23 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
     outcome.deviation = *deviation;
     to_input_units(outcome.deviation.source_to_surface, frame);
     to_input_units(outcome.deviation.surface_to_source, frame);
+    outcome.curves = measure_curves(result.domain, fit->surface);
+    for (CurveDeviation& loop : outcome.curves.boundary)
+        to_input_units(loop, frame);
+    if (outcome.curves.creases)
+        to_input_units(*outcome.curves.creases, frame);
     result.surface = std::move(fit->surface);
     result.surface.transform(frame.size, frame.centre);
     // Of the coordinates that are written: rounding far from the origin is part of the result.
     outcome.continuity = measure_continuity(result.domain.complex, result.surface);
+
+    stage("bound");
+    const Result<HausdorffBound> bound =
+        bound_hausdorff(component.mesh, result.domain.complex, result.surface, {}, context);
+    if (!bound)
+        return bound.error();
+    outcome.bound = *bound;
+    use_proven(outcome.deviation, *bound);
 
     stage("brep");
     for (const KnotForm form : forms) {

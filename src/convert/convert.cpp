@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <utility>
@@ -61,6 +62,15 @@ KnotForm form_of(Format format, const ConvertOptions& options)
     if (format == Format::archive_3dm || options.spline == SplineScheme::eck_hoppe)
         return KnotForm::paper;
     return KnotForm::c1;
+}
+
+//! The path of one component's file.
+std::string part_path(const std::string& path, std::size_t number)
+{
+    fs::path part(path);
+    part.replace_filename(part.stem().string() + fmt::format("-{}", number) +
+                          part.extension().string());
+    return part.string();
 }
 
 Status check_folder(const std::string& path)
@@ -149,6 +159,17 @@ void add_outcome_warnings(const ConvertOptions& options, ConvertReport& report)
              vertex});
 }
 
+Result<std::string> to_bytes(Format format, const std::vector<Brep>& breps,
+                             const WriteOptions& options)
+{
+    switch (format) {
+    case Format::archive_3dm: return brep_to_3dm(breps, options);
+    case Format::step: return brep_to_step(breps, options);
+    case Format::occ_brep: break;
+    }
+    return brep_to_occ_brep(breps, options);
+}
+
 struct PendingFile {
     OutputFile file;
     std::string bytes;
@@ -174,18 +195,20 @@ Result<std::vector<PendingFile>> make_files(const ConvertOptions& options, const
         const Format format = *format_of(path);
         const std::size_t form = static_cast<std::size_t>(
             std::find(forms.begin(), forms.end(), form_of(format, options)) - forms.begin());
+        const bool split = options.components == ComponentMode::split;
         std::vector<Brep> breps;
         for (std::size_t c = 0; c < components.size(); ++c) {
             breps.push_back(components[c].breps[form]);
             breps.back().name =
                 write.title + (components.size() > 1 ? "-" + std::to_string(c + 1) : "");
+            if (!split && c + 1 < components.size())
+                continue;
+            Result<std::string> bytes = to_bytes(format, breps, write);
+            if (!bytes)
+                return bytes.error();
+            add(split ? part_path(path, c + 1) : path, name_of(format), std::move(*bytes));
+            breps.clear();
         }
-        Result<std::string> bytes = format == Format::archive_3dm ? brep_to_3dm(breps, write)
-                                    : format == Format::step      ? brep_to_step(breps, write)
-                                                                  : brep_to_occ_brep(breps, write);
-        if (!bytes)
-            return bytes.error();
-        add(path, name_of(format), std::move(*bytes));
     }
     if (options.tessellation) {
         std::vector<TessellationPart> parts;
@@ -234,6 +257,8 @@ std::optional<Error> ConvertOptions::check() const
             fmt::format("--patches {} is too few: at least {}", *patches, fewest_patches));
     if (patches && domain_in)
         return bad_option("--patches steers the automatic layout: it contradicts --domain-in");
+    if (fill_holes && !(fill_holes->value >= 0.0 && std::isfinite(fill_holes->value)))
+        return bad_option("the size of holes to fill must be a length that is not negative");
     if (domain_in && (constraints || constraints_out))
         return bad_option(
             fmt::format("{} is about the automatic layout: it contradicts --domain-in",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "convert/input.h"
 
+#include "bot2nurbs/fill_holes.h"
 #include "bot2nurbs/read_mesh.h"
 #include "mesh/boundary_loops.h"
 
@@ -44,7 +45,7 @@ std::optional<Error> refuse_open(const RepairedMesh& mesh)
     return Error{
         ErrorCode::open_mesh,
         fmt::format("{} open: {} boundary loop{}, at vert{} {}. A solid needs a closed mesh: "
-                    "leave out --solid for an open surface",
+                    "leave out --solid for an open surface, or fill holes with --fill-holes SIZE",
                     where, loops.size(), loops.size() == 1 ? "" : "s",
                     loops.size() == 1 ? "ex" : "ices", named),
         loops.front()};
@@ -53,7 +54,7 @@ std::optional<Error> refuse_open(const RepairedMesh& mesh)
 std::optional<Error> refuse_repairs(const RepairedMesh& mesh)
 {
     for (const RepairNote& note : mesh.notes)
-        if (!note.warning)
+        if (!note.warning && note.code != "hole_filled") // Which is asked for.
             return Error{ErrorCode::bad_geometry,
                          fmt::format("the mesh needs repair: {}. Leave out --no-repair to let this "
                                      "be done",
@@ -98,6 +99,58 @@ std::optional<Error> refuse(const ConvertOptions& options, const RepairedMesh& m
     return options.strict ? refuse_self_intersections(found) : std::nullopt;
 }
 
+double area(const ManifoldMesh& mesh)
+{
+    double sum = 0.0;
+    for (Index f = 0; f < mesh.face_count(); ++f)
+        sum += 0.5 * norm(mesh.area_vector(f));
+    return sum;
+}
+
+//! Leaves the component with the largest area.
+void keep_largest(RepairedMesh& mesh)
+{
+    if (mesh.components.size() < 2)
+        return;
+    std::size_t largest = 0;
+    double most = -1.0;
+    for (std::size_t c = 0; c < mesh.components.size(); ++c) {
+        const double a = area(mesh.components[c].mesh);
+        if (a > most) {
+            most = a;
+            largest = c;
+        }
+    }
+    const Index others = static_cast<Index>(mesh.components.size() - 1);
+    MeshComponent kept = std::move(mesh.components[largest]);
+    kept.surrounded_by = invalid_index;
+    if (kept.cavity) {
+        kept.cavity = false;
+        mesh.notes.push_back({"cavity_alone",
+                              "the largest component is the wall of a hollow in another one", 1,
+                              true});
+    }
+    mesh.notes.push_back({"components_left_out",
+                          fmt::format("{} of {} components were left out, as --components largest "
+                                      "asks",
+                                      others, others + 1),
+                          others, true});
+    mesh.components.clear();
+    mesh.components.push_back(std::move(kept));
+    mesh.box = mesh.components.front().mesh.box();
+}
+
+//! What is asked for beyond repair.
+Status apply_options(const ConvertOptions& options, RepairedMesh& mesh, const Context& context)
+{
+    if (options.fill_holes)
+        if (Status failed = fill_holes(mesh, options.fill_holes->of(mesh.box.diagonal()), context))
+            return failed;
+    if (options.components == ComponentMode::largest)
+        keep_largest(mesh);
+    return {};
+}
+
 struct LoadedInput {
     TriangleSoup soup;
     MeshReport found;
@@ -134,6 +187,8 @@ Result<PreparedInput> prepare_input(const ConvertOptions& options, Context& cont
     if (!repaired)
         return repaired.error();
     input.mesh = std::move(*repaired);
+    if (Status failed = apply_options(options, input.mesh, context))
+        return *failed;
     if (std::optional<Error> refused = refuse(options, input.mesh, input.found))
         return *refused;
     return input;
@@ -146,8 +201,10 @@ Result<InputReport> check_input(const ConvertOptions& options, Context& context)
         return loaded.error();
     InputReport report;
     report.mesh = std::move(loaded->found);
-    const Result<RepairedMesh> repaired = repair_mesh(std::move(loaded->soup), {}, context);
+    Result<RepairedMesh> repaired = repair_mesh(std::move(loaded->soup), {}, context);
     if (repaired) {
+        if (Status failed = apply_options(options, *repaired, context))
+            return *failed;
         report.repairs = repaired->notes;
         report.rejection = refuse(options, *repaired, report.mesh);
     } else if (repaired.error().code == ErrorCode::cancelled) {

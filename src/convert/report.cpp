@@ -6,7 +6,9 @@
 #include "io/atomic_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace bot2nurbs {
@@ -55,6 +57,14 @@ const char* knots_name(const std::optional<KnotForm>& knots)
     return *knots == KnotForm::paper ? "paper" : "c1";
 }
 
+constexpr std::array<const char*, 3> component_names{"all", "largest", "split"};
+
+std::string length_text(const Length& length)
+{
+    return length.relative ? fmt::format("{:g}%", 100.0 * length.value)
+                           : fmt::format("{:g}", length.value);
+}
+
 Json options_json(const ConvertOptions& o)
 {
     Json j;
@@ -63,6 +73,8 @@ Json options_json(const ConvertOptions& o)
     j["knots"] = knots_name(o.knots);
     j["rounds"] = o.fit.max_rounds;
     j["robust"] = o.fit.robust;
+    j["components"] = component_names[static_cast<std::size_t>(o.components)];
+    j["fill_holes"] = o.fill_holes ? Json(length_text(*o.fill_holes)) : Json(nullptr);
     j["repair"] = o.repair;
     j["strict"] = o.strict;
     j["domain_in"] = o.domain_in ? Json(*o.domain_in) : Json(nullptr);
@@ -86,20 +98,52 @@ Json side_json(const DistanceStatistics& s)
     return {{"max", s.max}, {"rms", s.rms}, {"samples", s.samples}, {"worst", point_json(s.worst)}};
 }
 
-//! `diagonal`: what relative distances are relative to.
-Json deviation_json(const Deviation& d, double diagonal, const std::string& unit)
+const char* name_of(HausdorffTermination termination)
+{
+    switch (termination) {
+    case HausdorffTermination::gap_reached: return "gap_reached";
+    case HausdorffTermination::decided: return "decided";
+    case HausdorffTermination::cell_limit: return "cell_limit";
+    }
+    return "";
+}
+
+//! `diagonal`: what relative distances are relative to. `bounds`: of the largest distance.
+Json deviation_json(const Deviation& d, const std::optional<DistanceBounds>& bounds,
+                    double diagonal, const std::string& unit)
 {
     Json j;
     j["unit"] = unit;
     j["diagonal"] = diagonal;
-    j["kind"] = "sampled";
+    j["kind"] = bounds ? "proven" : "sampled";
     j["max"] = d.max();
     j["rms"] = d.rms();
     j["max_relative"] = diagonal > 0.0 ? d.max() / diagonal : 0.0;
     j["rms_relative"] = diagonal > 0.0 ? d.rms() / diagonal : 0.0;
+    if (bounds) {
+        j["lower_bound"] = bounds->lower;
+        j["upper_bound"] = bounds->upper;
+        j["upper_bound_relative"] = diagonal > 0.0 ? bounds->upper / diagonal : 0.0;
+    }
     j["source_to_surface"] = side_json(d.source_to_surface);
     j["surface_to_source"] = side_json(d.surface_to_source);
     return j;
+}
+
+//! What is known of one component only: where it is worst, and what the bound took.
+void add_bound(Json& deviation, const HausdorffBound& bound)
+{
+    const FarPlace& worst = bound.worse_side().worst;
+    deviation["worst"] = {
+        {"side", &bound.worse_side() == &bound.surface_to_source ? "surface" : "source"},
+        {"point", point_json(worst.point)},
+        {"distance", worst.distance},
+        {"patch", index_or_null(worst.surface.quad)},
+        {"u", worst.surface.u},
+        {"v", worst.surface.v}};
+    deviation["bound"] = {{"termination", name_of(bound.termination)},
+                          {"cells", bound.cells},
+                          {"queries", bound.queries}};
 }
 
 Json continuity_json(const Continuity& c)
@@ -198,6 +242,14 @@ Json quality_json(const LayoutQuality& q)
             {"straightness", spread_json(q.straightness)}};
 }
 
+Json curve_json(const CurveDeviation& c)
+{
+    return {{"edges", c.edges},
+            {"length", c.length},
+            {"source_to_surface", side_json(c.source_to_surface)},
+            {"surface_to_source", side_json(c.surface_to_source)}};
+}
+
 Json component_json(const ComponentOutcome& c, const std::string& unit)
 {
     Json j;
@@ -213,8 +265,18 @@ Json component_json(const ComponentOutcome& c, const std::string& unit)
     if (c.brep_faces > 0) {
         j["fit"] = fit_json(c.fit);
         j["fit"]["history"] = rounds_json(c.fit);
-        j["deviation"] = deviation_json(c.deviation, c.diagonal, unit);
+        std::optional<DistanceBounds> bounds;
+        if (c.bound)
+            bounds = DistanceBounds{c.bound->lower(), c.bound->upper()};
+        j["deviation"] = deviation_json(c.deviation, bounds, c.diagonal, unit);
         j["deviation"]["worst_patch"] = index_or_null(c.deviation.worst_patch);
+        if (c.bound)
+            add_bound(j["deviation"], *c.bound);
+        j["boundary"] = Json::array();
+        for (const CurveDeviation& loop : c.curves.boundary)
+            j["boundary"].push_back(curve_json(loop));
+        if (c.curves.creases)
+            j["creases"] = curve_json(*c.curves.creases);
         j["continuity"] = continuity_json(c.continuity);
         j["brep"] = brep_json(c.brep_faces, c.brep_edges, c.brep_vertices, c.brep);
     }
@@ -354,6 +416,18 @@ Deviation ConvertReport::deviation() const
     return all;
 }
 
+std::optional<DistanceBounds> ConvertReport::distance() const
+{
+    DistanceBounds all;
+    for (const ComponentOutcome& c : components) {
+        if (!c.bound)
+            return std::nullopt;
+        all.lower = std::max(all.lower, c.bound->lower());
+        all.upper = std::max(all.upper, c.bound->upper());
+    }
+    return components.empty() ? std::nullopt : std::optional(all);
+}
+
 bool ConvertReport::valid() const
 {
     return !components.empty() &&
@@ -379,7 +453,8 @@ std::string report_to_json(const ConvertOptions& options, const ConvertReport& r
     const bool fitted = !report.components.empty() && report.components.front().brep_faces > 0;
     if (fitted) {
         j["fit"] = fit_json(all_fits(report.components));
-        j["deviation"] = deviation_json(report.deviation(), report.diagonal, report.units);
+        j["deviation"] =
+            deviation_json(report.deviation(), report.distance(), report.diagonal, report.units);
         j["continuity"] = continuity_json(all_joins(report.components));
         j["brep"] = all_breps(report);
         // No test of our own decides this yet; the report must not claim more.

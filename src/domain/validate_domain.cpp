@@ -12,8 +12,23 @@ namespace {
 
 constexpr std::size_t listed_per_rule = 100;
 //! Fewest quads around a vertex inside: around one of valence 2 two quads share two sides, and the
-//! surface would have to fold back. A boundary vertex may have one.
+//! surface would have to fold back. Where the boundary or two creases meet, one is enough.
 constexpr Index least_inner_valence = 3;
+
+//! Number of boundary and crease edges at a vertex.
+int sharp_edges(const QuadComplex& complex, Index v)
+{
+    int count = 0;
+    const Index first = complex.halfedge_at(v);
+    Index h = first;
+    do {
+        count += complex.is_sharp(complex.edge(h));
+        const Index last = QuadComplex::prev(h);
+        h = complex.twin(last);
+        count += h == invalid_index; // The last edge at the boundary is no start of a quad's side.
+    } while (h != first && h != invalid_index);
+    return count;
+}
 
 std::string number(std::size_t i)
 {
@@ -91,8 +106,7 @@ void check_elements(const QuadDomain& domain, Index max_valence, DefectList& def
                         places[i].second);
     for (Index v = 0; v < complex.vertex_count(); ++v) {
         const Index valence = complex.valence(v);
-        const bool boundary = complex.twin(complex.halfedge_at(v)) == invalid_index;
-        if (!boundary && valence < least_inner_valence)
+        if (valence < least_inner_valence && sharp_edges(complex, v) < 2)
             defects.add("valence",
                         "domain vertex " + number(v) + " has " + number(valence) +
                             " quads; inside, at least " + number(least_inner_valence) +

@@ -8,7 +8,7 @@ namespace bot2nurbs {
 namespace {
 
 //! Per patch its own grid of vertices: closest-point queries do not need them joined.
-ClosestPoint tessellate(const SplineSurface& surface, Index side)
+ClosestPoint tessellate(const SplineSurface& surface, Index side, const Context* context)
 {
     const Index row = side + 1;
     std::vector<Vec3> positions;
@@ -16,6 +16,8 @@ ClosestPoint tessellate(const SplineSurface& surface, Index side)
     positions.reserve(static_cast<std::size_t>(surface.patch_count()) * row * row);
     triangles.reserve(2ul * surface.patch_count() * side * side);
     for (Index q = 0; q < surface.patch_count(); ++q) {
+        if (context && context->cancelled())
+            break;
         const Index first = static_cast<Index>(positions.size());
         for (Index i = 0; i <= side; ++i)
             for (Index j = 0; j <= side; ++j)
@@ -28,14 +30,15 @@ ClosestPoint tessellate(const SplineSurface& surface, Index side)
                 triangles.push_back({a, a + row + 1, a + 1});
             }
     }
-    return ClosestPoint(positions, triangles);
+    return ClosestPoint(positions, triangles, context);
 }
 
 } // namespace
 
 SurfaceLocator::SurfaceLocator(const QuadComplex& complex, const SplineSurface& surface,
-                               Index cells)
-    : side_(cells * pieces_per_side), walk_(complex, surface), tree_(tessellate(surface, side_))
+                               Index cells, const Context* context)
+    : side_(cells * pieces_per_side), walk_(complex, surface),
+      tree_(tessellate(surface, side_, context))
 {
 }
 

@@ -14,8 +14,10 @@ namespace bot2nurbs {
 class SurfaceLocator {
 public:
     //! `cells` tessellation cells per Bezier piece and direction. \pre the surface has a patch.
-    //! Both arguments must outlive the locator.
-    SurfaceLocator(const QuadComplex& complex, const SplineSurface& surface, Index cells);
+    //! Both arguments must outlive the locator. It must not be used when `context` was cancelled
+    //! meanwhile.
+    SurfaceLocator(const QuadComplex& complex, const SplineSurface& surface, Index cells,
+                   const Context* context = nullptr);
 
     //! The foot of p.
     FootPoint closest(const Vec3& p) const;

@@ -12,6 +12,8 @@ namespace {
 constexpr double valence_weight = 0.35;
 // At the boundary, where the angle cannot be shared out differently, it costs more.
 constexpr double boundary_weight = 0.7;
+// Where a person asked for a valence it is to be met unless that distorts badly.
+constexpr double asked_weight = 2.0;
 // Largest valence a change may make in K: the masks grow fast beyond. In K_tri a vertex has half as
 // many edges again.
 constexpr int max_quad_valence = 6;
@@ -74,6 +76,8 @@ double Valences::cost(Index vertex, int edges) const
     if (is_degenerate(vertex, edges - count_[vertex]))
         return degenerate_cost;
     const double d = static_cast<double>(edges) - wanted(vertex);
+    if (asked_.count(vertex) != 0)
+        return asked_weight * d * d;
     return (is_inside(vertex) ? valence_weight : boundary_weight) * d * d;
 }
 

@@ -15,9 +15,11 @@ namespace bot2nurbs {
 namespace {
 
 // Bounds of a cotangent weight. The lower one keeps weights positive where opposite angles add up
-// to more than a half turn; the upper one keeps the system well conditioned on needles.
-constexpr double min_weight = 0.02;
-constexpr double max_weight = 1e4;
+// to more than a half turn. Needles and slivers have large weights next to negative ones that
+// cancel them; where the lower bound takes the negative ones away, the large ones would pull a
+// vertex onto its neighbour or the border, so there is an upper bound not far from the lower one.
+constexpr double min_weight = 0.2;
+constexpr double max_weight = 5.0;
 // Up to this many inner vertices a dense solve is faster than a sparse one.
 constexpr Index dense_limit = 48;
 

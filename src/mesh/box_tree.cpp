@@ -102,7 +102,7 @@ Split find_split(const Item* first, const Item* last, const Box3& centers)
 
 } // namespace
 
-BoxTree::BoxTree(const std::vector<Box3>& boxes)
+BoxTree::BoxTree(const std::vector<Box3>& boxes, const Context* context)
 {
     const Index n = static_cast<Index>(boxes.size());
     if (n == 0)
@@ -123,6 +123,10 @@ BoxTree::BoxTree(const std::vector<Box3>& boxes)
     nodes_.emplace_back();
     std::vector<Task> tasks{root};
     while (!tasks.empty()) {
+        if (context && context->cancelled()) {
+            *this = {};
+            return;
+        }
         const Task task = tasks.back();
         tasks.pop_back();
         Item* const first = items.data() + task.first;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "bot2nurbs/result.h"
+#include "bot2nurbs/context.h"
 #include "bot2nurbs/vec.h"
 
 #include <vector>
@@ -19,8 +19,9 @@ public:
     };
 
     BoxTree() = default;
-    //! Cost O(n log n). \pre no box is empty.
-    explicit BoxTree(const std::vector<Box3>& boxes);
+    //! Cost O(n log n). Without any items when `context` is cancelled meanwhile. \pre no box is
+    //! empty.
+    explicit BoxTree(const std::vector<Box3>& boxes, const Context* context = nullptr);
 
     //! nodes()[0] is the root; empty without items.
     const std::vector<Node>& nodes() const { return nodes_; }

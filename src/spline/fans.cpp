@@ -27,14 +27,15 @@ Result<std::vector<Fan>> find_fans(const QuadComplex& complex)
             h = complex.rotate_ccw(h);
         } while (h != invalid_index && h != complex.halfedge_at(v));
         const bool boundary = h == invalid_index;
-        if (!boundary && around.size() < 3) {
+        const auto starts_fan = [&](Index s) { return complex.is_sharp(complex.edge(s)); };
+        // Two creases divide the quads as a boundary would; around one, or none, they are one fan.
+        if (!boundary && around.size() < 3 &&
+            std::count_if(around.begin(), around.end(), starts_fan) < 2) {
             return Error{ErrorCode::invalid_domain,
                          "vertex " + std::to_string(v) + " lies inside the domain and has only " +
                              std::to_string(around.size()) + " quads; at least 3 are needed",
                          v};
         }
-
-        const auto starts_fan = [&](Index s) { return complex.is_sharp(complex.edge(s)); };
         const auto first = std::find_if(around.begin(), around.end(), starts_fan);
         if (first == around.end()) {
             fans.push_back({v, FanKind::closed, 2.0 * M_PI, around});

@@ -8,33 +8,6 @@ namespace bot2nurbs {
 
 namespace {
 
-//! Below this |cos(phi)| a fan counts as regular. It comes out as 6e-17 for phi = pi / 2; the next
-//! default fan (valence 5) has 0.31.
-constexpr double regular_cosine = 1e-12;
-
-double alternating(Index i)
-{
-    return i % 2 == 0 ? 1.0 : -1.0;
-}
-
-void add(MaskRow& row, double weight, const MaskRow& other)
-{
-    for (std::size_t i = 0; i < row.size(); ++i)
-        row[i] += weight * other[i];
-}
-
-//! Weights w with x_i = sum_l w_l r_(i-l) a solution of x_i + x_(i-1) = r_i on a ring of n: the
-//! only one for odd n; for even n the smallest one, where the alternating sum of r vanishes.
-std::vector<double> ring_weights(Index n)
-{
-    std::vector<double> w(n);
-    for (Index l = 0; l < n; ++l) {
-        const double shape = n % 2 == 1 ? 0.5 : (double(n) - 1.0 - 2.0 * l) / (2.0 * n);
-        w[l] = alternating(l) * shape;
-    }
-    return w;
-}
-
 //! Twists x_0 .. x_(k-1) with x_i + x_(i-1) = r_i for the inner edges i = 1 .. k - 1: the solution
 //! closest to x_i = (r_i + r_(i+1)) / 4 + ..., which is exact where the surface is a sphere.
 std::vector<MaskRow> open_twists(const std::vector<MaskRow>& r)
@@ -52,10 +25,8 @@ std::vector<MaskRow> open_twists(const std::vector<MaskRow>& r)
         add(defect, -0.25, r[m - 1]);
         add(defect, 0.5, r[m]);
         add(defect, -0.25, r[m + 1]);
-        for (Index i = 0; i < k; ++i) {
-            const double share = double(m) / k - (m > i ? 1.0 : 0.0);
-            add(twist[i], alternating(i + m) * share, defect);
-        }
+        for (Index i = 0; i < k; ++i)
+            add(twist[i], chain_weight(k, m, i), defect);
     }
     return twist;
 }

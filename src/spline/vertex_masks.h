@@ -10,12 +10,9 @@
 //! to sector i - 1 and lies along edge i too.
 
 #include "spline/fans.h"
-
-#include <vector>
+#include "spline/mask_algebra.h"
 
 namespace bot2nurbs {
-
-using MaskRow = std::vector<double>;
 
 //! Masks of the scheme SplineScheme::peters.
 //!
@@ -33,7 +30,17 @@ struct PetersMask {
 
 //! The unknowns of a vertex that a fan sees, in order of its local columns. `plane_u` and `plane_v`
 //! span the tangents of a closed fan; an open fan has the tangents of its first and last edge.
-enum class VertexColumn { control, position, plane_u, plane_v, first_tangent, last_tangent, shear };
+//! `shear` is the alternating part of the controls, `twist` that of the coefficients (1, 1).
+enum class VertexColumn {
+    control,
+    position,
+    plane_u,
+    plane_v,
+    first_tangent,
+    last_tangent,
+    shear,
+    twist
+};
 
 //! `control` stands for A_i and is listed once a sector.
 std::vector<VertexColumn> peters_vertex_columns(FanKind kind, Index sectors);

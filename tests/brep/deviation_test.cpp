@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bot2nurbs/deviation.h"
 
-#include "domain_fixtures.h"
-#include "mesh_fixtures.h"
+#include "hausdorff_fixtures.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -10,22 +9,7 @@
 namespace bot2nurbs {
 namespace {
 
-//! Straight-sided patches: the exact bilinear surface of every quad.
-SplineSurface flat_patches(const fixtures::Domain& domain)
-{
-    SplineSurface surface;
-    for (Index q = 0; q < domain.complex.quad_count(); ++q) {
-        const auto& c = domain.complex.quad(q);
-        const auto& p = domain.positions;
-        for (int i = 0; i <= 12; ++i)
-            for (int j = 0; j <= 12; ++j) {
-                const double u = i / 12.0, v = j / 12.0;
-                surface.bezier().push_back((1 - u) * ((1 - v) * p[c[0]] + v * p[c[3]]) +
-                                           u * ((1 - v) * p[c[1]] + v * p[c[2]]));
-            }
-    }
-    return surface;
-}
+using fixtures::flat_patches;
 
 TEST(Deviation, is_zero_for_a_cube_against_its_own_flat_patches)
 {

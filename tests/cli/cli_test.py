@@ -90,7 +90,7 @@ class Conversion(CliTest):
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertEqual(run.stdout, "")
         self.assertEqual(sorted(os.listdir(self.folder)), ["a.3dm", "a.brep", "a.step", "a.stp"])
-        for word in ("patches", "extraordinary", "rms", "max", "joins", "solid     yes", "a.3dm"):
+        for word in ("patches", "extraordinary", "rms", "max", "bound", "joins", "solid     yes", "a.3dm"):
             self.assertIn(word, run.stderr)
         self.assertNotIn("\033", run.stderr)
         self.assertNotIn("\r", run.stderr)
@@ -107,6 +107,7 @@ class Conversion(CliTest):
         self.assertEqual(report["continuity"]["max_gap"], 0)
         self.assertLessEqual(report["continuity"]["max_g1_angle_deg"], 1e-8)
         self.assertLess(report["deviation"]["rms_relative"], 5e-3)
+        self.assertLessEqual(report["deviation"]["max"], report["deviation"]["upper_bound"])
         self.assertEqual(report["outputs"][0]["bytes"], os.path.getsize(self.folder / "a.3dm"))
         names = [stage["name"] for stage in report["stages"]]
         self.assertEqual(names[:3], ["read", "check", "repair"])
@@ -310,6 +311,57 @@ class BadInput(CliTest):
         run = self.run_command(crossing, "a.3dm")
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertIn("warning:", run.stderr)
+
+
+class OpenMeshes(CliTest):
+    def open_sphere(self):
+        vertices, faces = read_obj(SPHERE)
+        return self.write("a.off", off(vertices, [f for f in faces if 0 not in f]))
+
+    def report(self, *arguments):
+        run = self.run_command(*arguments, "--json", "r.json")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        report = json.loads((self.folder / "r.json").read_text())
+        rules = json.loads((ROOT / "docs/schema/report.schema.json").read_text())
+        self.assertEqual(schema.errors(report, rules), [])
+        return report
+
+    def test_the_report_measures_every_boundary_loop_both_ways(self):
+        report = self.report(self.open_sphere(), "a.3dm", "--open")
+        self.assertFalse(report["brep"]["solid"])
+        [loop] = report["components"][0]["boundary"]
+        limit = 0.002 * report["deviation"]["diagonal"]
+        for side in ("source_to_surface", "surface_to_source"):
+            self.assertGreater(loop[side]["samples"], 0)
+            self.assertLess(loop[side]["max"], limit)
+
+    def test_holes_are_filled_up_to_the_size_asked_for(self):
+        mesh = self.open_sphere()
+        report = self.report(mesh, "a.3dm", "--fill-holes", "50%", "--solid")
+        self.assertTrue(report["brep"]["solid"])
+        [filled] = [r for r in report["input"]["repairs"] if r["code"] == "hole_filled"]
+        self.assertIn("vertex", filled["message"])
+        self.assert_refused(5, "1 boundary loop", mesh, "b.3dm", "--fill-holes", "0.01%", "--solid")
+        run = self.run_command(mesh, "b.3dm", "--fill-holes", "wide")
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("--fill-holes wide", run.stderr)
+
+    def test_components_are_converted_as_asked(self):
+        vertices, faces = read_obj(SPHERE)
+        n = len(vertices)
+        moved = [(0.5 * x + 3, 0.5 * y, 0.5 * z) for x, y, z in vertices]
+        mesh = self.write("two.off", off(
+            moved + vertices, faces + [(a + n, b + n, c + n) for a, b, c in faces]))
+        report = self.report(mesh, "a.3dm")
+        self.assertEqual(len(report["components"]), 2)
+        report = self.report(mesh, "b.3dm", "--components", "largest")
+        self.assertEqual([c["first_face"] for c in report["components"]], [len(faces)])
+        self.assertIn("components_left_out", [w["code"] for w in report["warnings"]])
+        report = self.report(mesh, "c.3dm", "c.step", "--components", "split")
+        self.assertEqual([o["path"] for o in report["outputs"]],
+                         ["c-1.3dm", "c-2.3dm", "c-1.step", "c-2.step"])
+        for output in report["outputs"]:
+            self.assertTrue((self.folder / output["path"]).is_file())
 
 
 class Constraints(CliTest):

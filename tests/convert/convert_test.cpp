@@ -27,6 +27,12 @@ TEST_F(ConvertTest, a_supplied_domain_becomes_a_solid_in_every_format)
     EXPECT_EQ(c.continuity.max_gap, 0.0);
     EXPECT_LE(c.continuity.max_g1_angle_deg, 1e-8);
     EXPECT_LT(c.deviation.rms(), 1e-3 * c.diagonal);
+    ASSERT_TRUE(c.bound);
+    EXPECT_EQ(c.bound->termination, HausdorffTermination::gap_reached);
+    EXPECT_EQ(c.bound->patches.size(), 24u);
+    EXPECT_LE(c.deviation.max(), c.bound->upper());
+    EXPECT_GE(c.deviation.max(), c.bound->lower());
+    EXPECT_GE(c.bound->lower(), c.deviation.rms());
     ASSERT_EQ(report->outputs.size(), 3u);
     for (const OutputFile& file : report->outputs)
         EXPECT_EQ(file.bytes, std::filesystem::file_size(file.path));
@@ -260,7 +266,7 @@ TEST_F(ConvertTest, a_cancelled_conversion_writes_nothing_whenever_it_is_cancell
     ConvertOptions options = options_for({sphere_cube(1, 16)});
     options.outputs = {path("a.3dm"), path("a.step")};
     for (const char* stage : {"read", "check", "repair", "domain", "layout", "charts", "samples",
-                              "fit", "measure", "brep", "write"}) {
+                              "fit", "measure", "bound", "brep", "write"}) {
         Context context;
         bool reached = false;
         context.on_progress = [&](const std::string& name, double) {

@@ -85,6 +85,35 @@ TEST(Report, pools_deviations_by_samples_and_takes_the_worse_side)
     EXPECT_EQ(d["kind"], "sampled");
 }
 
+TEST(Report, has_an_upper_bound_when_there_is_one_for_every_component)
+{
+    ConvertReport report = example_report();
+    HausdorffBound bound;
+    bound.surface_to_source.lower = 0.19;
+    bound.surface_to_source.upper = 0.21;
+    bound.source_to_surface.upper = 0.22;
+    bound.surface_to_source.worst.surface = {7, 0.25, 1.0};
+    bound.cells = 5;
+    report.components[1].bound = bound;
+    const json without = json::parse(report_to_json({}, report));
+    EXPECT_FALSE(without["deviation"].contains("upper_bound"));
+    EXPECT_EQ(without["components"][1]["deviation"]["upper_bound"], 0.22);
+    bound.source_to_surface.lower = bound.source_to_surface.upper = 0.3;
+    report.components[0].bound = bound;
+    const json j = json::parse(report_to_json({}, report));
+    EXPECT_EQ(j["deviation"]["kind"], "proven");
+    EXPECT_EQ(j["deviation"]["lower_bound"], 0.3);
+    EXPECT_EQ(j["deviation"]["upper_bound"], 0.3);
+    EXPECT_DOUBLE_EQ(j["deviation"]["upper_bound_relative"], 0.3 / report.diagonal);
+    const json second = j["components"][1]["deviation"];
+    EXPECT_EQ(second["worst"]["side"], "surface");
+    EXPECT_EQ(second["worst"]["patch"], 7);
+    EXPECT_EQ(second["worst"]["u"], 0.25);
+    EXPECT_EQ(second["bound"]["termination"], "gap_reached");
+    EXPECT_EQ(second["bound"]["cells"], 5);
+    EXPECT_EQ(j["components"][0]["deviation"]["worst"]["side"], "source");
+}
+
 TEST(Report, claims_no_solid_when_one_component_is_none)
 {
     ConvertReport report = example_report();

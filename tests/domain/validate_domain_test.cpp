@@ -49,19 +49,19 @@ std::vector<PathPoint> reversed(std::vector<PathPoint> path)
 //! The domain with other quads over the same vertices: paths are taken from the old edges and from
 //! `more`, by their ends.
 void set_quads(QuadDomain& domain, const std::vector<std::array<Index, 4>>& quads,
-               const Paths& more = {})
+               const Paths& more = {}, const std::vector<std::pair<Index, Index>>& creases = {})
 {
     Paths paths = more;
     for (const DomainEdge& edge : domain.edges)
         paths[{edge.a, edge.b}] = edge.path;
-    auto complex = QuadComplex::build(static_cast<Index>(domain.vertices.size()), quads);
+    auto complex = QuadComplex::build(static_cast<Index>(domain.vertices.size()), quads, creases);
     ASSERT_TRUE(complex.ok()) << complex.error().message;
     domain.complex = *complex;
     domain.edges.clear();
     for (Index e = 0; e < complex->edge_count(); ++e) {
         const Index a = complex->from(complex->halfedge_of_edge(e));
         const Index b = complex->to(complex->halfedge_of_edge(e));
-        DomainEdge edge{a, b, {}, false};
+        DomainEdge edge{a, b, {}, complex->is_crease(e)};
         if (paths.count({a, b}))
             edge.path = paths.at({a, b});
         else
@@ -200,6 +200,24 @@ TEST(ValidateDomain, rule_valence_two_quads_around_an_inner_vertex)
     const DomainValidation v = validated(hand);
     EXPECT_EQ(rules(v.defects), Rules{"valence"});
     EXPECT_EQ(v.defects[0].element, m);
+}
+
+TEST(ValidateDomain, of_two_quads_between_two_creases_breaks_no_rule)
+{
+    HandDomain hand = sphere_cube(0, 4);
+    const auto [a, b, c, d] = hand.domain.complex.quad(0);
+    const auto grid = [&](int i, int j) {
+        return hand.mesh.triangle(static_cast<Index>(2 * (4 * j + i)))[0];
+    };
+    const Index m = static_cast<Index>(hand.domain.vertices.size());
+    hand.domain.vertices.push_back(grid(2, 2));
+    auto quads = hand.domain.complex.quads();
+    quads[0] = {a, b, c, m};
+    quads.push_back({a, m, c, d});
+    set_quads(hand.domain, quads,
+              {{{a, m}, {{grid(1, 1), grid(1, 1), 0}}}, {{m, c}, {{grid(3, 3), grid(3, 3), 0}}}},
+              {{a, m}, {m, c}});
+    EXPECT_EQ(rules(validated(hand).defects), Rules{});
 }
 
 TEST(ValidateDomain, rule_valence_above_the_limit)

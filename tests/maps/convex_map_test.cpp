@@ -71,7 +71,7 @@ Overlay flat_square(int n)
     return overlay;
 }
 
-TEST(ConvexMap, of_a_flat_square_has_the_least_energy_within_half_a_percent)
+TEST(ConvexMap, of_a_flat_square_has_the_least_energy_within_a_percent)
 {
     Overlay overlay = flat_square(8);
     std::mt19937 random(3);
@@ -83,8 +83,8 @@ TEST(ConvexMap, of_a_flat_square_has_the_least_energy_within_half_a_percent)
     const auto map = map_to_polygon(overlay, unit_square());
     ASSERT_TRUE(map);
     EXPECT_EQ(map->level, MapLevel::harmonic);
-    // The identity is harmonic with energy one; only weights at their lower bound disturb it.
-    EXPECT_NEAR(measure_distortion(overlay, map->uv).dirichlet, 1.0, 5e-3);
+    // The identity is harmonic with energy one; only weights at their bounds disturb it.
+    EXPECT_NEAR(measure_distortion(overlay, map->uv).dirichlet, 1.0, 1e-2);
 }
 
 TEST(ConvexMap, of_the_regular_grid_is_the_identity)

@@ -54,14 +54,16 @@ double worst_determinant(const QuadComplex& k, const SplineSurface& s, Index e)
 TEST(Continuity, random_nets_of_valence_3_to_10_have_one_tangent_plane_along_every_smooth_edge)
 {
     for (const Domain& d : all_domains()) {
-        const SplineNetwork network = network_of(d);
-        for (std::uint64_t seed : {1u, 2u, 3u}) {
-            const SplineSurface s(network, random_unknowns(network, seed));
-            const Continuity c = measure_continuity(d.complex, s, 13);
-            EXPECT_EQ(c.max_gap, 0.0) << d.name;
-            EXPECT_LE(c.max_g1_angle_deg, random_angle_deg) << d.name << " edge " << c.worst_edge;
-            EXPECT_LE(c.max_inner_angle_deg, random_angle_deg) << d.name;
-            EXPECT_EQ(c.undefined_normals, 0u) << d.name;
+        for (const SplineNetwork& network : networks_of(d)) {
+            for (std::uint64_t seed : {1u, 2u, 3u}) {
+                const SplineSurface s(network, random_unknowns(network, seed));
+                const Continuity c = measure_continuity(d.complex, s, 13);
+                EXPECT_EQ(c.max_gap, 0.0) << d.name;
+                EXPECT_LE(c.max_g1_angle_deg, random_angle_deg)
+                    << d.name << " edge " << c.worst_edge;
+                EXPECT_LE(c.max_inner_angle_deg, random_angle_deg) << d.name;
+                EXPECT_EQ(c.undefined_normals, 0u) << d.name;
+            }
         }
     }
 }
@@ -69,12 +71,13 @@ TEST(Continuity, random_nets_of_valence_3_to_10_have_one_tangent_plane_along_eve
 TEST(Continuity, derivatives_of_both_sides_are_coplanar_along_every_smooth_edge)
 {
     for (const Domain& d : all_domains()) {
-        const SplineNetwork network = network_of(d);
-        const SplineSurface s(network, random_unknowns(network, 4));
-        for (Index e = 0; e < d.complex.edge_count(); ++e) {
-            if (d.complex.is_sharp(e))
-                continue;
-            EXPECT_LE(worst_determinant(d.complex, s, e), 2e-13) << d.name << " edge " << e;
+        for (const SplineNetwork& network : networks_of(d)) {
+            const SplineSurface s(network, random_unknowns(network, 4));
+            for (Index e = 0; e < d.complex.edge_count(); ++e) {
+                if (d.complex.is_sharp(e))
+                    continue;
+                EXPECT_LE(worst_determinant(d.complex, s, e), 2e-13) << d.name << " edge " << e;
+            }
         }
     }
 }
@@ -85,21 +88,22 @@ TEST(Continuity, cross_derivatives_obey_the_quadratic_law_at_both_ends_of_every_
     // second.
     for (const Domain& d : closed_domains()) {
         const QuadComplex& k = d.complex;
-        const SplineNetwork network = network_of(d);
-        const SplineSurface s(network, random_unknowns(network, 5));
-        for (Index h = 0; h < k.halfedge_count(); ++h) {
-            const Index g = k.twin(h);
-            const double c = fan_cosine(k.valence(k.from(h)));
-            std::array<Vec3, 7> x, rest;
-            for (Index j = 0; j < 7; ++j) {
-                x[j] = local_bezier(s, h, j, 0);
-                rest[j] = local_bezier(s, h, j, 1) + local_bezier(s, g, 12 - j, 1) - 2.0 * x[j];
+        for (const SplineNetwork& network : networks_of(d)) {
+            const SplineSurface s(network, random_unknowns(network, 5));
+            for (Index h = 0; h < k.halfedge_count(); ++h) {
+                const Index g = k.twin(h);
+                const double c = fan_cosine(k.valence(k.from(h)));
+                std::array<Vec3, 7> x, rest;
+                for (Index j = 0; j < 7; ++j) {
+                    x[j] = local_bezier(s, h, j, 0);
+                    rest[j] = local_bezier(s, h, j, 1) + local_bezier(s, g, 12 - j, 1) - 2.0 * x[j];
+                }
+                const Vec3 q1 = 1.5 * x[1] - 0.5 * x[0], q2 = x[3];
+                rest[0] -= 4.0 * c / 3.0 * (q1 - x[0]);
+                rest[1] -= 4.0 * c / 9.0 * (q2 - q1);
+                for (const Vec3& r : rest)
+                    EXPECT_LE(max_abs(r), 4e-15) << d.name << " halfedge " << h;
             }
-            const Vec3 q1 = 1.5 * x[1] - 0.5 * x[0], q2 = x[3];
-            rest[0] -= 4.0 * c / 3.0 * (q1 - x[0]);
-            rest[1] -= 4.0 * c / 9.0 * (q2 - q1);
-            for (const Vec3& r : rest)
-                EXPECT_LE(max_abs(r), 4e-15) << d.name << " halfedge " << h;
         }
     }
 }
@@ -107,18 +111,19 @@ TEST(Continuity, cross_derivatives_obey_the_quadratic_law_at_both_ends_of_every_
 TEST(Continuity, patches_are_c1_across_their_inner_knots)
 {
     for (const Domain& d : all_domains()) {
-        const SplineNetwork network = network_of(d);
-        EXPECT_TRUE(network.c1_inside);
-        const SplineSurface s(network, random_unknowns(network, 6));
-        for (Index q = 0; q < s.patch_count(); ++q) {
-            for (Index k : {3u, 6u, 9u}) {
-                for (Index j = 0; j < 13; ++j) {
-                    EXPECT_LE(max_abs(s.bezier(q, k - 1, j) + s.bezier(q, k + 1, j) -
-                                      2.0 * s.bezier(q, k, j)),
-                              3e-15);
-                    EXPECT_LE(max_abs(s.bezier(q, j, k - 1) + s.bezier(q, j, k + 1) -
-                                      2.0 * s.bezier(q, j, k)),
-                              3e-15);
+        for (const SplineNetwork& network : networks_of(d)) {
+            EXPECT_TRUE(network.c1_inside);
+            const SplineSurface s(network, random_unknowns(network, 6));
+            for (Index q = 0; q < s.patch_count(); ++q) {
+                for (Index k : {3u, 6u, 9u}) {
+                    for (Index j = 0; j < 13; ++j) {
+                        EXPECT_LE(max_abs(s.bezier(q, k - 1, j) + s.bezier(q, k + 1, j) -
+                                          2.0 * s.bezier(q, k, j)),
+                                  3e-15);
+                        EXPECT_LE(max_abs(s.bezier(q, j, k - 1) + s.bezier(q, j, k + 1) -
+                                          2.0 * s.bezier(q, j, k)),
+                                  3e-15);
+                    }
                 }
             }
         }
@@ -130,18 +135,19 @@ TEST(Continuity, tangent_plane_is_the_same_all_around_a_dart)
     for (const Domain& d : feature_domains()) {
         if (d.name.rfind("dart", 0) != 0)
             continue;
-        const SplineNetwork network = network_of(d);
-        const SplineSurface s(network, random_unknowns(network, 7));
-        const Index n = d.complex.max_valence();
-        const std::vector<Index> sectors = sectors_at(d.complex, n);
-        const Vec3 p = local_bezier(s, sectors[0], 0, 0);
-        Vec3 first;
-        for (Index h : sectors) {
-            const Vec3 normal =
-                normalized(cross(local_bezier(s, h, 1, 0) - p, local_bezier(s, h, 0, 1) - p));
-            if (h == sectors[0])
-                first = normal;
-            EXPECT_LE(norm(cross(first, normal)), 1e-12) << d.name;
+        for (const SplineNetwork& network : networks_of(d)) {
+            const SplineSurface s(network, random_unknowns(network, 7));
+            const Index n = d.complex.max_valence();
+            const std::vector<Index> sectors = sectors_at(d.complex, n);
+            const Vec3 p = local_bezier(s, sectors[0], 0, 0);
+            Vec3 first;
+            for (Index h : sectors) {
+                const Vec3 normal =
+                    normalized(cross(local_bezier(s, h, 1, 0) - p, local_bezier(s, h, 0, 1) - p));
+                if (h == sectors[0])
+                    first = normal;
+                EXPECT_LE(norm(cross(first, normal)), 1e-12) << d.name;
+            }
         }
     }
 }
@@ -166,7 +172,8 @@ TEST(Continuity, joins_stay_exact_at_any_scale_and_far_from_the_origin)
     for (Index n = 5; n <= 10; ++n)
         domains.push_back(refine(split_bipyramid(n)));
     for (const Domain& d : domains) {
-        for (SplineScheme scheme : {SplineScheme::peters, SplineScheme::eck_hoppe}) {
+        for (SplineScheme scheme :
+             {SplineScheme::peters, SplineScheme::eck_hoppe, SplineScheme::full}) {
             const SplineNetwork network = network_of(d, scheme);
             Box3 box;
             for (const Vec3& p : d.positions)
@@ -210,7 +217,8 @@ std::size_t largest_entry(const SparseRows& rows, Index row)
 
 TEST(Continuity, a_mask_with_one_weight_off_by_a_percent_shows_as_a_kink_at_its_vertex)
 {
-    for (SplineScheme scheme : {SplineScheme::peters, SplineScheme::eck_hoppe}) {
+    for (SplineScheme scheme :
+         {SplineScheme::peters, SplineScheme::eck_hoppe, SplineScheme::full}) {
         const Domain d = split_bipyramid(5);
         SplineNetwork network = network_of(d, scheme);
         const Index h = d.complex.halfedge_at(5);

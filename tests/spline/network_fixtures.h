@@ -24,6 +24,19 @@ inline SplineNetwork network_of(const Domain& d, SplineScheme scheme = SplineSch
     return std::move(*built);
 }
 
+//! The networks of the schemes that cover every domain.
+inline std::vector<SplineNetwork> networks_of(const Domain& d)
+{
+    return {network_of(d), network_of(d, SplineScheme::full)};
+}
+
+inline const char* name_of(SplineScheme scheme)
+{
+    return scheme == SplineScheme::peters ? "peters"
+           : scheme == SplineScheme::full ? "full"
+                                          : "eck_hoppe";
+}
+
 //! Reproducible numbers on every platform (the distributions of <random> are not).
 class Random {
 public:

@@ -52,26 +52,27 @@ Index rank_of(const SplineNetwork& network)
 TEST(SplineNetwork, rows_are_sorted_sum_to_one_and_hold_no_zeros)
 {
     for (const Domain& d : all_domains()) {
-        const SplineNetwork network = network_of(d);
-        ASSERT_EQ(network.stencils.row_count(), 169 * d.complex.quad_count());
-        ASSERT_EQ(network.is_point.size(), network.unknown_count);
-        std::vector<char> used(network.unknown_count, 0);
-        for (Index r = 0; r < network.stencils.row_count(); ++r) {
-            double sum = 0.0;
-            for (std::size_t i = network.stencils.offset[r]; i < network.stencils.offset[r + 1];
-                 ++i) {
-                const Index c = network.stencils.column[i];
-                ASSERT_LT(c, network.unknown_count);
-                if (i > network.stencils.offset[r]) {
-                    EXPECT_LT(network.stencils.column[i - 1], c);
+        for (const SplineNetwork& network : networks_of(d)) {
+            ASSERT_EQ(network.stencils.row_count(), 169 * d.complex.quad_count());
+            ASSERT_EQ(network.is_point.size(), network.unknown_count);
+            std::vector<char> used(network.unknown_count, 0);
+            for (Index r = 0; r < network.stencils.row_count(); ++r) {
+                double sum = 0.0;
+                for (std::size_t i = network.stencils.offset[r]; i < network.stencils.offset[r + 1];
+                     ++i) {
+                    const Index c = network.stencils.column[i];
+                    ASSERT_LT(c, network.unknown_count);
+                    if (i > network.stencils.offset[r]) {
+                        EXPECT_LT(network.stencils.column[i - 1], c);
+                    }
+                    EXPECT_GT(std::fabs(network.stencils.weight[i]), 1e-15);
+                    sum += network.is_point[c] ? network.stencils.weight[i] : 0.0;
+                    used[c] = 1;
                 }
-                EXPECT_GT(std::fabs(network.stencils.weight[i]), 1e-15);
-                sum += network.is_point[c] ? network.stencils.weight[i] : 0.0;
-                used[c] = 1;
+                EXPECT_NEAR(sum, 1.0, 2e-15) << d.name << " row " << r;
             }
-            EXPECT_NEAR(sum, 1.0, 2e-15) << d.name << " row " << r;
+            EXPECT_EQ(std::count(used.begin(), used.end(), 0), 0) << d.name;
         }
-        EXPECT_EQ(std::count(used.begin(), used.end(), 0), 0) << d.name;
     }
 }
 
@@ -79,21 +80,23 @@ TEST(SplineNetwork, both_patches_of_an_edge_have_identical_rows_along_it)
 {
     for (const Domain& d : all_domains()) {
         const QuadComplex& k = d.complex;
-        const SparseRows& s = network_of(d).stencils;
-        const auto row_at = [](Index h, Index along) {
-            const auto [i, j] = from_side(QuadComplex::side_of(h), along, 0, 12);
-            return SplineNetwork::row(QuadComplex::quad_of(h), i, j);
-        };
-        for (Index h = 0; h < k.halfedge_count(); ++h) {
-            if (k.twin(h) == invalid_index)
-                continue;
-            for (Index j = 0; j < 13; ++j) {
-                const Index a = row_at(h, j), b = row_at(k.twin(h), 12 - j);
-                const std::size_t n = s.offset[a + 1] - s.offset[a];
-                ASSERT_EQ(n, s.offset[b + 1] - s.offset[b]);
-                for (std::size_t i = 0; i < n; ++i) {
-                    EXPECT_EQ(s.column[s.offset[a] + i], s.column[s.offset[b] + i]);
-                    EXPECT_EQ(s.weight[s.offset[a] + i], s.weight[s.offset[b] + i]);
+        for (const SplineNetwork& network : networks_of(d)) {
+            const SparseRows& s = network.stencils;
+            const auto row_at = [](Index h, Index along) {
+                const auto [i, j] = from_side(QuadComplex::side_of(h), along, 0, 12);
+                return SplineNetwork::row(QuadComplex::quad_of(h), i, j);
+            };
+            for (Index h = 0; h < k.halfedge_count(); ++h) {
+                if (k.twin(h) == invalid_index)
+                    continue;
+                for (Index j = 0; j < 13; ++j) {
+                    const Index a = row_at(h, j), b = row_at(k.twin(h), 12 - j);
+                    const std::size_t n = s.offset[a + 1] - s.offset[a];
+                    ASSERT_EQ(n, s.offset[b + 1] - s.offset[b]);
+                    for (std::size_t i = 0; i < n; ++i) {
+                        EXPECT_EQ(s.column[s.offset[a] + i], s.column[s.offset[b] + i]);
+                        EXPECT_EQ(s.weight[s.offset[a] + i], s.weight[s.offset[b] + i]);
+                    }
                 }
             }
         }
@@ -103,12 +106,31 @@ TEST(SplineNetwork, both_patches_of_an_edge_have_identical_rows_along_it)
 TEST(SplineNetwork, all_patches_at_a_vertex_share_its_position_to_the_bit)
 {
     for (const Domain& d : all_domains()) {
-        const SplineNetwork network = network_of(d);
-        const SplineSurface s(network, random_unknowns(network, 1));
-        for (Index h = 0; h < d.complex.halfedge_count(); ++h) {
-            const Index v = d.complex.from(h);
-            EXPECT_EQ(local_bezier(s, h, 0, 0), local_bezier(s, d.complex.halfedge_at(v), 0, 0));
+        for (const SplineNetwork& network : networks_of(d)) {
+            const SplineSurface s(network, random_unknowns(network, 1));
+            for (Index h = 0; h < d.complex.halfedge_count(); ++h) {
+                const Index v = d.complex.from(h);
+                EXPECT_EQ(local_bezier(s, h, 0, 0),
+                          local_bezier(s, d.complex.halfedge_at(v), 0, 0));
+            }
         }
+    }
+}
+
+TEST(SplineNetwork, of_two_quads_at_a_vertex_exists_only_between_two_creases)
+{
+    const Domain torus = torus_grid(6, 5);
+    auto quads = torus.complex.quads();
+    const auto [a, b, c, d] = quads[0];
+    const Index m = torus.complex.vertex_count();
+    quads[0] = {a, b, c, m};
+    quads.push_back({a, m, c, d});
+    using Creases = std::vector<std::pair<Index, Index>>;
+    for (const Creases& creases : {Creases{}, Creases{{a, m}}, Creases{{a, m}, {m, c}}}) {
+        const Result<QuadComplex> complex = QuadComplex::build(m + 1, quads, creases);
+        ASSERT_TRUE(complex.ok()) << complex.error().message;
+        const Result<SplineNetwork> network = build_spline_network(*complex, SplineScheme::peters);
+        EXPECT_EQ(network.ok(), creases.size() == 2);
     }
 }
 
@@ -339,14 +361,15 @@ TEST(SplineNetwork, follows_affine_maps_of_its_unknowns)
     const Vec3 a = random.point(), b = random.point(), c = random.point(), t = random.point();
     const auto map = [&](const Vec3& p) { return Vec3{dot(a, p), dot(b, p), dot(c, p)}; };
     for (const Domain& d : all_domains()) {
-        const SplineNetwork network = network_of(d);
-        const std::vector<Vec3> x = random_unknowns(network, 2);
-        std::vector<Vec3> y(x.size());
-        for (std::size_t i = 0; i < x.size(); ++i)
-            y[i] = map(x[i]) + double(network.is_point[i]) * t;
-        const SplineSurface s(network, x), moved(network, y);
-        for (std::size_t i = 0; i < s.bezier().size(); ++i) {
-            EXPECT_LE(max_abs(moved.bezier()[i] - map(s.bezier()[i]) - t), 2e-14) << d.name;
+        for (const SplineNetwork& network : networks_of(d)) {
+            const std::vector<Vec3> x = random_unknowns(network, 2);
+            std::vector<Vec3> y(x.size());
+            for (std::size_t i = 0; i < x.size(); ++i)
+                y[i] = map(x[i]) + double(network.is_point[i]) * t;
+            const SplineSurface s(network, x), moved(network, y);
+            for (std::size_t i = 0; i < s.bezier().size(); ++i) {
+                EXPECT_LE(max_abs(moved.bezier()[i] - map(s.bezier()[i]) - t), 2e-14) << d.name;
+            }
         }
     }
 }
@@ -354,14 +377,15 @@ TEST(SplineNetwork, follows_affine_maps_of_its_unknowns)
 TEST(SplineNetwork, unknowns_in_a_plane_give_a_surface_in_it)
 {
     for (const Domain& d : all_domains()) {
-        const SplineNetwork network = network_of(d);
-        std::vector<Vec3> x = random_unknowns(network, 2);
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            x[i].z = 0.3 * x[i].x - 1.7 * x[i].y + (network.is_point[i] ? 0.9 : 0.0);
-        }
-        const SplineSurface s(network, x);
-        for (const Vec3& p : s.bezier()) {
-            EXPECT_NEAR(p.z, 0.3 * p.x - 1.7 * p.y + 0.9, 1e-14) << d.name;
+        for (const SplineNetwork& network : networks_of(d)) {
+            std::vector<Vec3> x = random_unknowns(network, 2);
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                x[i].z = 0.3 * x[i].x - 1.7 * x[i].y + (network.is_point[i] ? 0.9 : 0.0);
+            }
+            const SplineSurface s(network, x);
+            for (const Vec3& p : s.bezier()) {
+                EXPECT_NEAR(p.z, 0.3 * p.x - 1.7 * p.y + 0.9, 1e-14) << d.name;
+            }
         }
     }
 }
@@ -370,13 +394,15 @@ TEST(SplineNetwork, a_regular_grid_reproduces_linear_parameters)
 {
     // The nearest surface to the bilinear patches is those patches, because they are in the space.
     const Domain d = disk_grid(3, 2);
-    const SplineNetwork network = network_of(d);
-    const SplineSurface s(network, bilinear_unknowns(network, d.positions));
-    for (Index q = 0; q < s.patch_count(); ++q) {
-        const Vec3 origin = d.positions[d.complex.quad(q)[0]];
-        for (Index i = 0; i < 13; ++i) {
-            for (Index j = 0; j < 13; ++j) {
-                EXPECT_LE(max_abs(s.bezier(q, i, j) - origin - Vec3{i / 12.0, j / 12.0, 0}), 1e-12);
+    for (const SplineNetwork& network : networks_of(d)) {
+        const SplineSurface s(network, bilinear_unknowns(network, d.positions));
+        for (Index q = 0; q < s.patch_count(); ++q) {
+            const Vec3 origin = d.positions[d.complex.quad(q)[0]];
+            for (Index i = 0; i < 13; ++i) {
+                for (Index j = 0; j < 13; ++j) {
+                    EXPECT_LE(max_abs(s.bezier(q, i, j) - origin - Vec3{i / 12.0, j / 12.0, 0}),
+                              1e-12);
+                }
             }
         }
     }
@@ -391,7 +417,8 @@ TEST(SplineNetwork, normals_point_outward_where_quads_turn_outward)
             p = normalized(p);
     }
     for (const Domain& d : domains) {
-        for (SplineScheme scheme : {SplineScheme::peters, SplineScheme::eck_hoppe}) {
+        for (SplineScheme scheme :
+             {SplineScheme::peters, SplineScheme::eck_hoppe, SplineScheme::full}) {
             // The masks of 1996 fold at valence 8 on so coarse a domain.
             if (scheme == SplineScheme::eck_hoppe && d.complex.max_valence() > 6)
                 continue;
@@ -419,21 +446,23 @@ TEST(SplineNetwork, does_not_depend_on_where_a_quad_starts)
         std::rotate(quads[q].begin(), quads[q].begin() + q % 4, quads[q].end());
     }
     const Domain turned = make_domain("turned", d.positions, quads);
-    const SplineNetwork a = network_of(d), b = network_of(turned);
-    const Eigen::MatrixXd ma = dense(a.stencils, a.unknown_count);
-    const Eigen::MatrixXd mb = dense(b.stencils, b.unknown_count);
-    Eigen::MatrixXd both(ma.rows(), ma.cols() + mb.cols());
-    both.leftCols(ma.cols()) = ma;
-    for (Index q = 0; q < quads.size(); ++q) {
-        for (Index i = 0; i < 13; ++i) {
-            for (Index j = 0; j < 13; ++j) {
-                const auto [x, y] = from_side(q % 4, i, j, 12);
-                both.row(SplineNetwork::row(q, x, y)).rightCols(mb.cols()) =
-                    mb.row(SplineNetwork::row(q, i, j));
+    for (SplineScheme scheme : {SplineScheme::peters, SplineScheme::full}) {
+        const SplineNetwork a = network_of(d, scheme), b = network_of(turned, scheme);
+        const Eigen::MatrixXd ma = dense(a.stencils, a.unknown_count);
+        const Eigen::MatrixXd mb = dense(b.stencils, b.unknown_count);
+        Eigen::MatrixXd both(ma.rows(), ma.cols() + mb.cols());
+        both.leftCols(ma.cols()) = ma;
+        for (Index q = 0; q < quads.size(); ++q) {
+            for (Index i = 0; i < 13; ++i) {
+                for (Index j = 0; j < 13; ++j) {
+                    const auto [x, y] = from_side(q % 4, i, j, 12);
+                    both.row(SplineNetwork::row(q, x, y)).rightCols(mb.cols()) =
+                        mb.row(SplineNetwork::row(q, i, j));
+                }
             }
         }
+        EXPECT_EQ(gram_rank(both.transpose() * both), a.unknown_count);
     }
-    EXPECT_EQ(gram_rank(both.transpose() * both), a.unknown_count);
 }
 
 TEST(SplineNetwork, inner_vertices_of_valence_2_are_refused_by_name)
@@ -441,7 +470,8 @@ TEST(SplineNetwork, inner_vertices_of_valence_2_are_refused_by_name)
     // A pillow: two quads with the same four corners.
     const Domain pillow = make_domain("pillow", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
                                       {{0, 1, 2, 3}, {3, 2, 1, 0}});
-    for (SplineScheme scheme : {SplineScheme::peters, SplineScheme::eck_hoppe}) {
+    for (SplineScheme scheme :
+         {SplineScheme::peters, SplineScheme::eck_hoppe, SplineScheme::full}) {
         const auto built = build_spline_network(pillow.complex, scheme);
         ASSERT_FALSE(built.ok());
         EXPECT_EQ(built.error().code, ErrorCode::invalid_domain);
