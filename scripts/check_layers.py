@@ -45,6 +45,7 @@ PUBLIC_HEADERS = {
     "fit_network": "fit",
     "deviation": "brep",
     "hausdorff_bound": "brep",
+    "refine_to_tolerance": "refine",
     "brep": "brep",
     "read_mesh": "io",
     "write_brep": "io",

@@ -22,6 +22,10 @@ struct FitOptions {
     double fairness = 1e-4; //!< Weight of the thin-plate energy in the first round, dimensionless.
     double fairness_floor = 1e-6; //!< The weight falls by sqrt(10) a round down to this.
     DistanceRows rows = DistanceRows::tangent;
+    //! Distance at which a sample counts twice: from round to round its weight is multiplied by
+    //! 1 + (distance / emphasis)^2, up to 11. Lowers the largest distance at the cost of the rms.
+    //! 0: all count as their weights say.
+    double emphasis = 0.0;
     bool robust = false; //!< Iteratively reweighted least squares (Huber) against outliers.
     double stall = 0.02; //!< Stop when a round lowers the rms error by less than this share.
     //! Largest condition of the scaled normal matrix that is trusted (half the digits of a double

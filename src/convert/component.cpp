@@ -4,6 +4,7 @@
 #include "bot2nurbs/detect_features.h"
 #include "bot2nurbs/domain_samples.h"
 #include "bot2nurbs/layout.h"
+#include "convert/component_tolerance.h"
 #include "convert/constraints_input.h"
 
 #include <algorithm>
@@ -156,6 +157,20 @@ void log_rounds(const FitSummary& fit, const Context& context)
     }
 }
 
+Result<FitResult> fit_domain(const ManifoldMesh& source, const QuadDomain& domain,
+                             const std::vector<QuadChart>& charts, const ConvertOptions& options,
+                             Context& context)
+{
+    Result<SurfaceSampleSet> samples = make_samples(source, charts, {}, context);
+    if (!samples)
+        return samples.error();
+    add_curve_samples(source, domain.complex, charts, {}, *samples);
+    const Result<SplineNetwork> network = build_spline_network(domain.complex, options.spline);
+    if (!network)
+        return network.error();
+    return fit_network(*network, *samples, options.fit, context);
+}
+
 } // namespace
 
 Result<ConvertedComponent> convert_component(const MeshComponent& component, DomainWishes wishes,
@@ -184,6 +199,10 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
         return features.error();
     outcome.features = describe(*features, component);
 
+    std::optional<ToleranceOptions> tolerance;
+    if (wishes.tolerance)
+        tolerance = tolerance_options(options, *wishes.tolerance / frame.size);
+
     stage("layout");
     if (wishes.supplied) {
         result.domain = std::move(*wishes.supplied);
@@ -193,7 +212,10 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
         layout_options.features = feature_paths(*features);
         layout_options.constraints = std::move(wishes.constraints);
         layout_options.seed = options.seed;
-        Result<LayoutResult> layout = build_layout(*unit, layout_options, context);
+        Result<LayoutResult> layout =
+            tolerance && !options.patches
+                ? layout_for_tolerance(*unit, layout_options, *tolerance, context)
+                : build_layout(*unit, layout_options, context);
         if (!layout)
             return layout.error();
         result.domain = std::move(layout->domain);
@@ -207,6 +229,20 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
     }
     if (Status failed = place_carrier(result.domain.carrier, *unit))
         return *failed;
+
+    std::optional<FitResult> fit;
+    if (tolerance) {
+        stage("refine");
+        Result<ToleranceFit> refined =
+            refine_to_tolerance(*unit, std::move(result.domain), *tolerance, context);
+        if (!refined)
+            return refined.error();
+        outcome.tolerance = describe(*refined, frame.size);
+        outcome.tolerance->tolerance = *wishes.tolerance;
+        log_rounds(*outcome.tolerance, context);
+        result.domain = std::move(refined->domain);
+        fit = std::move(refined->fit);
+    }
     outcome.domain = describe(result.domain);
 
     stage("charts");
@@ -222,21 +258,13 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
     if (forms.empty())
         return result;
 
-    stage("samples");
-    Result<SurfaceSampleSet> samples = make_samples(*unit, *charts, {}, context);
-    if (!samples)
-        return samples.error();
-
-    add_curve_samples(*unit, result.domain.complex, *charts, {}, *samples);
-
-    stage("fit");
-    const Result<SplineNetwork> network =
-        build_spline_network(result.domain.complex, options.spline);
-    if (!network)
-        return network.error();
-    Result<FitResult> fit = fit_network(*network, *samples, options.fit, context);
-    if (!fit)
-        return fit.error();
+    if (!fit) {
+        stage("fit");
+        Result<FitResult> fitted = fit_domain(*unit, result.domain, *charts, options, context);
+        if (!fitted)
+            return fitted.error();
+        fit = std::move(*fitted);
+    }
     outcome.fit = std::move(fit->summary);
     to_input_units(outcome.fit, frame);
     log_rounds(outcome.fit, context);
@@ -266,6 +294,12 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
         return bound.error();
     outcome.bound = *bound;
     use_proven(outcome.deviation, *bound);
+    if (outcome.tolerance) {
+        if (Status failed = judge(component.mesh, result.domain.complex, result.surface, *bound,
+                                  *outcome.tolerance, context))
+            return *failed;
+        outcome.fit.termination = name(outcome.tolerance->termination);
+    }
 
     stage("brep");
     for (const KnotForm form : forms) {

@@ -25,6 +25,8 @@ struct ConvertedComponent {
 struct DomainWishes {
     std::optional<QuadDomain> supplied; //!< Replaces the automatic layout.
     DomainConstraints constraints;      //!< Bind the automatic layout.
+    //! Largest distance wanted, in units of the input: refines the domain.
+    std::optional<double> tolerance;
 };
 
 //! Converts one component. No knot forms asked for: stops after the domain. `stage_suffix` is added

@@ -54,6 +54,8 @@ std::optional<Error> FitOptions::check() const
         return bad("fit: fairness must be positive");
     if (!(fairness_floor > 0.0) || fairness_floor > fairness)
         return bad("fit: fairness_floor must be positive and at most fairness");
+    if (!(emphasis >= 0.0) || !std::isfinite(emphasis))
+        return bad("fit: emphasis must not be negative");
     if (!(stall >= 0.0 && stall < 1.0))
         return bad("fit: stall must be in [0, 1)");
     if (!(condition_limit >= 1.0))
@@ -90,6 +92,7 @@ Result<FitResult> fit_network(const SplineNetwork& network, SurfaceSampleSet& sa
         loop.points[i] = (samples.positions[i] - center) / extent;
         loop.weights[i] = samples.weights[i] / weight_sum;
     }
+    loop.emphasis = options.emphasis / extent;
     loop.where = samples.domain;
     loop.normals = samples.normals;
     loop.on_curve = samples.on_curve;
