@@ -19,6 +19,7 @@ const std::map<std::string, int> archive_versions{{"4", 4},   {"5", 50},  {"6", 
                                                   {"60", 60}, {"70", 70}, {"80", 80}};
 const std::map<std::string, KnotForm> knot_forms{{"paper", KnotForm::paper}, {"c1", KnotForm::c1}};
 const std::map<std::string, SplineScheme> schemes{{"peters", SplineScheme::peters},
+                                                  {"full", SplineScheme::full},
                                                   {"eck-hoppe", SplineScheme::eck_hoppe}};
 const std::map<std::string, StepSchema> step_schemas{{"AP242", StepSchema::ap242},
                                                      {"AP214", StepSchema::ap214}};
@@ -86,6 +87,16 @@ bool parse_features(const std::string& text, ConvertOptions& options)
     return !options.feature_options.check();
 }
 
+// False for an unknown kind of layout.
+bool parse_layout(const std::string& text, ConvertOptions& options)
+{
+    const std::string quads = "quads=";
+    if (text.compare(0, quads.size(), quads) != 0)
+        return text == "eck";
+    options.quads = text.substr(quads.size());
+    return !options.quads->empty();
+}
+
 } // namespace
 
 std::variant<Command, int> parse_command(int argc, char** argv)
@@ -122,6 +133,15 @@ std::variant<Command, int> parse_command(int argc, char** argv)
                        "Most patches per component that --tolerance may use (default: 5000)")
             ->type_name("N")
             ->group(surface);
+    std::string layout = "eck";
+    app.add_option("--layout", layout,
+                   "Automatic patches, or the quads of a mesh FILE (.obj .ply .off) near INPUT")
+        ->type_name("eck|quads=FILE")
+        ->capture_default_str()
+        ->group(surface);
+    app.add_flag("--cage", o.cage,
+                 "INPUT is a mesh of quads: convert its Catmull-Clark surface, a patch a quad")
+        ->group(surface);
     KnotForm knots = KnotForm::paper;
     CLI::Option* knots_option =
         add_choice(app, "--knots", knots, knot_forms,
@@ -129,7 +149,7 @@ std::variant<Command, int> parse_command(int argc, char** argv)
             ->type_name("paper|c1")
             ->group(surface);
     add_choice(app, "--spline", o.spline, schemes, "Spline scheme (default: peters)")
-        ->type_name("peters|eck-hoppe")
+        ->type_name("peters|full|eck-hoppe")
         ->group(surface);
     app.add_option("--rounds", o.fit.max_rounds, "Most rounds of fitting")
         ->type_name("N")
@@ -250,6 +270,11 @@ std::variant<Command, int> parse_command(int argc, char** argv)
             features.c_str());
         return exit_code(ErrorCode::bad_option);
     }
+    if (!parse_layout(layout, o)) {
+        std::fprintf(stderr, "bot2nurbs: --layout %s is neither eck nor quads=FILE\n",
+                     layout.c_str());
+        return exit_code(ErrorCode::bad_option);
+    }
     if (*fill_holes_option) {
         o.fill_holes = parse_length(fill_holes);
         if (!o.fill_holes || !(o.fill_holes->value >= 0.0)) {
@@ -293,6 +318,10 @@ std::variant<Command, int> parse_command(int argc, char** argv)
         }
         if (!o.outputs.empty() || o.domain_out || o.constraints_out || o.tessellation) {
             std::fprintf(stderr, "bot2nurbs: %s writes no output file\n", name);
+            return exit_code(ErrorCode::bad_option);
+        }
+        if (o.cage) {
+            std::fprintf(stderr, "bot2nurbs: %s does not look at a --cage\n", name);
             return exit_code(ErrorCode::bad_option);
         }
         if (*validate)

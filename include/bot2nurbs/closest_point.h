@@ -33,11 +33,16 @@ public:
     Hit query(const Vec3& p) const;
     //! The closest point at most `distance_limit` away. Faster the smaller the limit.
     Hit query(const Vec3& p, double distance_limit) const;
+    //! The closest point on triangles whose normals lean towards `direction`: at a thin wall that
+    //! on its near side. where.face is invalid_index when there is none.
+    Hit query_facing(const Vec3& p, const Vec3& direction) const;
     //! All triangles that come within `distance` of p, and others near it, in no useful order.
     std::vector<Index> faces_near(const Vec3& p, double distance) const;
 
 private:
     struct Tree;
+    template <class Accept>
+    Hit search(const Vec3& p, double distance_limit, const Accept& accept) const;
     std::shared_ptr<const Tree> tree_;
 };
 

@@ -81,6 +81,13 @@ struct ConvertOptions {
     bool repair = true;  //!< Make harmless repairs; false: reject an input that needs any.
     bool strict = false; //!< Reject self-intersecting input instead of warning.
 
+    //! The input is a subdivision cage, a mesh of quads, and what is converted is the limit surface
+    //! of Catmull and Clark's subdivision, a patch for each quad. See cage_surface. Creases are not
+    //! looked for, nor whether it crosses itself.
+    bool cage = false;
+    //! Mesh file of quads near the input that become the patches, instead of the automatic layout:
+    //! .obj, .ply or .off; a connected piece for each component. See import_quads.
+    std::optional<std::string> quads;
     //! Domain file to use instead of the automatic layout; it must hold a domain for each
     //! component and none for others.
     std::optional<std::string> domain_in;

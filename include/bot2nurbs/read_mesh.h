@@ -3,6 +3,7 @@
 
 #include "bot2nurbs/context.h"
 #include "bot2nurbs/manifold_mesh.h"
+#include "bot2nurbs/polygon_mesh.h"
 
 #include <string>
 
@@ -20,5 +21,9 @@ namespace bot2nurbs {
 //! not finite), cancelled. Memory stays proportional to the size of the file, whatever its counts
 //! say.
 Result<TriangleSoup> read_mesh(const std::string& path, Context& context);
+
+//! The same file with its polygons as they are: what read_mesh cuts into triangles. Errors: the
+//! same.
+Result<PolygonMesh> read_polygons(const std::string& path, Context& context);
 
 } // namespace bot2nurbs

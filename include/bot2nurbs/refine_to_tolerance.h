@@ -74,11 +74,11 @@ struct ToleranceFit {
 Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain start,
                                          const ToleranceOptions& options, Context& context);
 
-//! A layout to start from: the coarsest of a few, each a share finer than the last, of whose patches
-//! nine tenths are within the tolerance; else the finest within max_patches, or the last before
-//! more patches gained nothing. Cutting patches of a layout that is too coarse nearly everywhere
-//! would copy their shapes, and need more of them. `layout.patches` is not used.
-//! Errors: bad_option; those of build_layout() and of refine_to_tolerance().
+//! A layout to start from: the coarsest of a few, each a share finer than the last, of whose
+//! patches nine tenths are within the tolerance; else the finest within max_patches, or the last
+//! before more patches gained nothing. Cutting patches of a layout that is too coarse nearly
+//! everywhere would copy their shapes, and need more of them. `layout.patches` is not used. Errors:
+//! bad_option; those of build_layout() and of refine_to_tolerance().
 Result<LayoutResult> layout_for_tolerance(const ManifoldMesh& source, LayoutOptions layout,
                                           const ToleranceOptions& options, Context& context);
 

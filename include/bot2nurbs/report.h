@@ -59,6 +59,16 @@ struct ToleranceReport {
     Index best = 0; //!< The round that is written.
 };
 
+//! How a mesh of quads became the domain of a component.
+struct QuadsReport {
+    double largest_move = 0.0;             //!< Of a vertex of the quads, to its place on the mesh.
+    Index farthest_vertex = invalid_index; //!< That vertex, as the file of the quads numbers it.
+    Index crease_edges = 0;                //!< Edges of the quads that are creases.
+    double largest_detour = 1.0; //!< Length of an edge on the mesh over the distance of its ends.
+    //! The ends of that edge, as the file of the quads numbers them.
+    std::array<Index, 2> detour_edge{invalid_index, invalid_index};
+};
+
 //! What became of one connected component of the input.
 struct ComponentOutcome {
     Index first_face = invalid_index; //!< Its first triangle, in the numbering of the input.
@@ -70,6 +80,7 @@ struct ComponentOutcome {
     FeatureReport features;
     DomainReport domain;
     std::optional<LayoutSummary> layout;      //!< Absent when the domain was supplied.
+    std::optional<QuadsReport> quads;         //!< Present when the layout was a mesh of quads.
     LayoutQuality quality;                    //!< Of the domain.
     FitSummary fit;                           //!< Distances in units of the input.
     Deviation deviation;                      //!< In units of the input.

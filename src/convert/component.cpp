@@ -110,6 +110,23 @@ std::vector<FeaturePath> feature_paths(const MeshFeatures& features)
     return paths;
 }
 
+//! The domain that a quad mesh makes; creases that it does not follow are no features any more.
+Result<QuadDomain> import_layout(const ManifoldMesh& unit, QuadMesh quads, const Frame& frame,
+                                 MeshFeatures& features, QuadsReport& report, Context& context)
+{
+    for (Vec3& p : quads.positions)
+        p = frame.to_unit(p);
+    Result<QuadImport> made = import_quads(unit, quads, features, context);
+    if (!made)
+        return made.error();
+    report.largest_move = frame.size * made->largest_move;
+    report.farthest_vertex = quads.source_vertex[made->farthest_vertex];
+    report.crease_edges = made->crease_edges;
+    features.kept_edges -= static_cast<Index>(made->smoothed.size());
+    features.smoothed.insert(features.smoothed.end(), made->smoothed.begin(), made->smoothed.end());
+    return std::move(made->domain);
+}
+
 void to_input_units(DistanceStatistics& s, const Frame& frame)
 {
     s.max *= frame.size;
@@ -157,18 +174,48 @@ void log_rounds(const FitSummary& fit, const Context& context)
     }
 }
 
-Result<FitResult> fit_domain(const ManifoldMesh& source, const QuadDomain& domain,
-                             const std::vector<QuadChart>& charts, const ConvertOptions& options,
-                             Context& context)
+Result<SurfaceSampleSet> sample_domain(const ManifoldMesh& source, const QuadComplex& complex,
+                                       const std::vector<QuadChart>& charts, Context& context)
 {
     Result<SurfaceSampleSet> samples = make_samples(source, charts, {}, context);
-    if (!samples)
-        return samples.error();
-    add_curve_samples(source, domain.complex, charts, {}, *samples);
-    const Result<SplineNetwork> network = build_spline_network(domain.complex, options.spline);
+    if (samples)
+        add_curve_samples(source, complex, charts, {}, *samples);
+    return samples;
+}
+
+Result<FitResult> fit_samples(const QuadComplex& complex, SurfaceSampleSet& samples,
+                              const ConvertOptions& options, Context& context)
+{
+    const Result<SplineNetwork> network = build_spline_network(complex, options.spline);
     if (!network)
         return network.error();
-    return fit_network(*network, *samples, options.fit, context);
+    return fit_network(*network, samples, options.fit, context);
+}
+
+//! The edge that is longest over the distance of its ends.
+void find_detour(const QuadDomain& domain, const std::vector<Index>& vertex_names,
+                 QuadsReport& report)
+{
+    const ManifoldMesh& mesh = domain.carrier.mesh;
+    for (const DomainEdge& edge : domain.edges) {
+        const Vec3 start = mesh.position(domain.vertices[edge.a]);
+        const Vec3 end = mesh.position(domain.vertices[edge.b]);
+        Vec3 last = start;
+        double length = 0.0;
+        for (const PathPoint& p : edge.path) {
+            const Vec3 next = p.is_vertex()
+                                  ? mesh.position(p.from)
+                                  : (1.0 - p.t) * mesh.position(p.from) + p.t * mesh.position(p.to);
+            length += norm(next - last);
+            last = next;
+        }
+        length += norm(end - last);
+        const double distance = norm(end - start);
+        if (distance > 0.0 && length > report.largest_detour * distance) {
+            report.largest_detour = length / distance;
+            report.detour_edge = {vertex_names[edge.a], vertex_names[edge.b]};
+        }
+    }
 }
 
 } // namespace
@@ -194,10 +241,11 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
     outcome.diagonal = component.mesh.box().diagonal();
 
     stage("features");
-    Result<MeshFeatures> features = find_features(*unit, options, context);
+    // The surface of a cage is smooth.
+    Result<MeshFeatures> features =
+        options.cage ? MeshFeatures() : find_features(*unit, options, context);
     if (!features)
         return features.error();
-    outcome.features = describe(*features, component);
 
     std::optional<ToleranceOptions> tolerance;
     if (wishes.tolerance)
@@ -206,6 +254,13 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
     stage("layout");
     if (wishes.supplied) {
         result.domain = std::move(*wishes.supplied);
+    } else if (wishes.quads) {
+        Result<QuadDomain> domain =
+            import_layout(*unit, *wishes.quads, frame, *features, outcome.quads.emplace(), context);
+        if (!domain)
+            return domain.error();
+        result.domain = std::move(*domain);
+        result.domain.source_signature = signature(component.mesh);
     } else {
         LayoutOptions layout_options;
         layout_options.patches = options.patches;
@@ -227,8 +282,11 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
         for (const std::string& note : layout->summary.notes)
             context.log(LogLevel::info, "layout: " + note);
     }
+    outcome.features = describe(*features, component);
     if (Status failed = place_carrier(result.domain.carrier, *unit))
         return *failed;
+    if (outcome.quads)
+        find_detour(result.domain, wishes.quads->source_vertex, *outcome.quads);
 
     std::optional<FitResult> fit;
     if (tolerance) {
@@ -259,8 +317,13 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
         return result;
 
     if (!fit) {
+        stage("samples");
+        Result<SurfaceSampleSet> samples =
+            sample_domain(*unit, result.domain.complex, *charts, context);
+        if (!samples)
+            return samples.error();
         stage("fit");
-        Result<FitResult> fitted = fit_domain(*unit, result.domain, *charts, options, context);
+        Result<FitResult> fitted = fit_samples(result.domain.complex, *samples, options, context);
         if (!fitted)
             return fitted.error();
         fit = std::move(*fitted);

@@ -3,7 +3,7 @@
 
 #include "bot2nurbs/convert.h"
 #include "bot2nurbs/domain_constraints.h"
-#include "bot2nurbs/quad_domain.h"
+#include "bot2nurbs/import_quads.h"
 #include "bot2nurbs/repair_mesh.h"
 
 #include <optional>
@@ -24,6 +24,7 @@ struct ConvertedComponent {
 //! What the caller says of one component's domain.
 struct DomainWishes {
     std::optional<QuadDomain> supplied; //!< Replaces the automatic layout.
+    std::optional<QuadMesh> quads;      //!< Become it, in the coordinates of the input.
     DomainConstraints constraints;      //!< Bind the automatic layout.
     //! Largest distance wanted, in units of the input: refines the domain.
     std::optional<double> tolerance;

@@ -2,10 +2,13 @@
 #include "bot2nurbs/convert.h"
 
 #include "bot2nurbs/domain_file.h"
+#include "convert/cage_input.h"
+#include "convert/check_layout.h"
 #include "convert/component.h"
 #include "convert/constraints_input.h"
 #include "convert/domain_input.h"
 #include "convert/input.h"
+#include "convert/quads_input.h"
 #include "convert/tessellation.h"
 #include "io/atomic_file.h"
 
@@ -294,14 +297,10 @@ std::optional<Error> ConvertOptions::check() const
     if (max_patches && *max_patches < patches.value_or(fewest_patches))
         return bad_option(fmt::format("--max-patches {} is too few: at least {}", *max_patches,
                                       patches.value_or(fewest_patches)));
-    if (patches && domain_in)
-        return bad_option("--patches steers the automatic layout: it contradicts --domain-in");
+    if (std::optional<Error> failed = check_layout(*this))
+        return failed;
     if (fill_holes && !(fill_holes->value >= 0.0 && std::isfinite(fill_holes->value)))
         return bad_option("the size of holes to fill must be a length that is not negative");
-    if (domain_in && (constraints || constraints_out))
-        return bad_option(
-            fmt::format("{} is about the automatic layout: it contradicts --domain-in",
-                        constraints ? "--constraints" : "--constraints-out"));
     if (std::optional<Error> failed = fit.check())
         return failed;
     if (std::optional<Error> failed = feature_options.check())
@@ -320,7 +319,8 @@ std::optional<Error> ConvertOptions::check() const
         if (std::find(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), paths[i]) !=
             paths.begin() + static_cast<std::ptrdiff_t>(i))
             return bad_option(fmt::format("{} is to be written twice", paths[i]));
-        for (const auto& read : {std::optional<std::string>(input), domain_in, constraints}) {
+        for (const auto& read :
+             {std::optional<std::string>(input), domain_in, quads, constraints}) {
             std::error_code unknown;
             if (read && fs::equivalent(paths[i], *read, unknown))
                 return bad_option(fmt::format("{} is read: it would be overwritten", paths[i]));
@@ -335,7 +335,16 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
 {
     if (const std::optional<Error> failed = options.check())
         return *failed;
-    const Result<PreparedInput> input = prepare_input(options, context);
+    std::vector<QuadDomain> supplied;
+    const Result<PreparedInput> input = [&]() -> Result<PreparedInput> {
+        if (!options.cage)
+            return prepare_input(options, context);
+        Result<PreparedCage> cage = prepare_cage(options, context);
+        if (!cage)
+            return cage.error();
+        supplied = std::move(cage->domains);
+        return std::move(cage->input);
+    }();
     if (!input)
         return input.error();
     const RepairedMesh& mesh = input->mesh;
@@ -349,12 +358,20 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
     report.diagonal = mesh.box.diagonal();
     add_input_warnings(*input, report);
 
-    std::vector<QuadDomain> supplied;
     if (options.domain_in) {
         Result<std::vector<QuadDomain>> domains = valid_domains(*options.domain_in, mesh, context);
         if (!domains)
             return domains.error();
         supplied = std::move(*domains);
+    }
+
+    std::vector<QuadMesh> quads;
+    if (options.quads) {
+        context.begin_stage("read quads");
+        Result<std::vector<QuadMesh>> read = quads_of_components(*options.quads, mesh, context);
+        if (!read)
+            return read.error();
+        quads = std::move(*read);
     }
 
     std::vector<DomainConstraints> constraints(mesh.components.size());
@@ -379,8 +396,10 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
     const std::size_t count = mesh.components.size();
     for (std::size_t c = 0; c < count; ++c) {
         DomainWishes wishes;
-        if (options.domain_in)
+        if (!supplied.empty())
             wishes.supplied = std::move(supplied[c]);
+        if (options.quads)
+            wishes.quads = std::move(quads[c]);
         wishes.constraints = std::move(constraints[c]);
         const std::string suffix = count > 1 ? fmt::format(" {}/{}", c + 1, count) : "";
         if (options.tolerance)
@@ -405,6 +424,7 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
         report.components.push_back(c.outcome);
     add_outcome_warnings(options, report);
     add_tolerance_warnings(report);
+    add_detour_warnings(report);
     if (context.cancelled())
         return Context::cancelled_error("write");
     for (const PendingFile& pending : *files) {

@@ -13,44 +13,6 @@ namespace bot2nurbs {
 
 namespace {
 
-//! Names the boundary loops of all components by their first vertex in the numbering of the input.
-std::optional<Error> refuse_open(const RepairedMesh& mesh)
-{
-    constexpr std::size_t most_named = 8;
-    Index open_components = 0;
-    std::vector<Index> loops; // First vertex of each.
-    for (const MeshComponent& c : mesh.components) {
-        if (c.boundary_loops == 0)
-            continue;
-        ++open_components;
-        for (const std::vector<Index>& loop : boundary_loops(c.mesh)) {
-            Index first = invalid_index;
-            for (const Index v : loop)
-                first = std::min(first, c.source_vertex[v]);
-            loops.push_back(first);
-        }
-    }
-    if (loops.empty())
-        return std::nullopt;
-    std::sort(loops.begin(), loops.end());
-    std::string named;
-    for (std::size_t i = 0; i < std::min(loops.size(), most_named); ++i)
-        named += (i > 0 ? ", " : "") + std::to_string(loops[i]);
-    if (loops.size() > most_named)
-        named += ", ...";
-    const std::string where =
-        mesh.components.size() == 1
-            ? std::string("the mesh is")
-            : fmt::format("{} of {} components are", open_components, mesh.components.size());
-    return Error{
-        ErrorCode::open_mesh,
-        fmt::format("{} open: {} boundary loop{}, at vert{} {}. A solid needs a closed mesh: "
-                    "leave out --solid for an open surface, or fill holes with --fill-holes SIZE",
-                    where, loops.size(), loops.size() == 1 ? "" : "s",
-                    loops.size() == 1 ? "ex" : "ices", named),
-        loops.front()};
-}
-
 std::optional<Error> refuse_repairs(const RepairedMesh& mesh)
 {
     for (const RepairNote& note : mesh.notes)
@@ -172,6 +134,43 @@ Result<LoadedInput> load_input(const ConvertOptions& options, Context& context)
 }
 
 } // namespace
+
+std::optional<Error> refuse_open(const RepairedMesh& mesh)
+{
+    constexpr std::size_t most_named = 8;
+    Index open_components = 0;
+    std::vector<Index> loops; // First vertex of each.
+    for (const MeshComponent& c : mesh.components) {
+        if (c.boundary_loops == 0)
+            continue;
+        ++open_components;
+        for (const std::vector<Index>& loop : boundary_loops(c.mesh)) {
+            Index first = invalid_index;
+            for (const Index v : loop)
+                first = std::min(first, c.source_vertex[v]);
+            loops.push_back(first);
+        }
+    }
+    if (loops.empty())
+        return std::nullopt;
+    std::sort(loops.begin(), loops.end());
+    std::string named;
+    for (std::size_t i = 0; i < std::min(loops.size(), most_named); ++i)
+        named += (i > 0 ? ", " : "") + std::to_string(loops[i]);
+    if (loops.size() > most_named)
+        named += ", ...";
+    const std::string where =
+        mesh.components.size() == 1
+            ? std::string("the mesh is")
+            : fmt::format("{} of {} components are", open_components, mesh.components.size());
+    return Error{
+        ErrorCode::open_mesh,
+        fmt::format("{} open: {} boundary loop{}, at vert{} {}. A solid needs a closed mesh: "
+                    "leave out --solid for an open surface, or fill holes with --fill-holes SIZE",
+                    where, loops.size(), loops.size() == 1 ? "" : "s",
+                    loops.size() == 1 ? "ex" : "ices", named),
+        loops.front()};
+}
 
 Result<PreparedInput> prepare_input(const ConvertOptions& options, Context& context)
 {

@@ -57,6 +57,16 @@ const char* knots_name(const std::optional<KnotForm>& knots)
     return *knots == KnotForm::paper ? "paper" : "c1";
 }
 
+const char* name_of(SplineScheme scheme)
+{
+    switch (scheme) {
+    case SplineScheme::peters: return "peters";
+    case SplineScheme::full: return "full";
+    case SplineScheme::eck_hoppe: return "eck-hoppe";
+    }
+    return "";
+}
+
 constexpr std::array<const char*, 3> component_names{"all", "largest", "split"};
 
 std::string length_text(const Length& length)
@@ -72,7 +82,7 @@ Json options_json(const ConvertOptions& o)
     j["tolerance"] = o.tolerance ? Json(o.tolerance->value) : Json(nullptr);
     j["tolerance_relative"] = o.tolerance && o.tolerance->relative;
     j["max_patches"] = o.max_patches ? Json(*o.max_patches) : Json(nullptr);
-    j["spline"] = o.spline == SplineScheme::peters ? "peters" : "eck-hoppe";
+    j["spline"] = name_of(o.spline);
     j["knots"] = knots_name(o.knots);
     j["rounds"] = o.fit.max_rounds;
     j["robust"] = o.fit.robust;
@@ -80,6 +90,7 @@ Json options_json(const ConvertOptions& o)
     j["fill_holes"] = o.fill_holes ? Json(length_text(*o.fill_holes)) : Json(nullptr);
     j["repair"] = o.repair;
     j["strict"] = o.strict;
+    j["layout"] = o.cage ? "cage" : o.quads ? "quads=" + *o.quads : "eck";
     j["domain_in"] = o.domain_in ? Json(*o.domain_in) : Json(nullptr);
     j["domain_out"] = o.domain_out ? Json(*o.domain_out) : Json(nullptr);
     j["constraints"] = o.constraints ? Json(*o.constraints) : Json(nullptr);
@@ -290,6 +301,12 @@ Json component_json(const ComponentOutcome& c, const std::string& unit)
     j["domain"] = domain_json(c.domain);
     if (c.layout)
         j["layout"] = layout_json(*c.layout);
+    if (c.quads)
+        j["quads"] = {{"largest_move", c.quads->largest_move},
+                      {"farthest_vertex", c.quads->farthest_vertex},
+                      {"crease_edges", c.quads->crease_edges},
+                      {"largest_detour", c.quads->largest_detour},
+                      {"detour_edge", c.quads->detour_edge}};
     j["layout_quality"] = quality_json(c.quality);
     if (c.brep_faces > 0) {
         j["fit"] = fit_json(c.fit);

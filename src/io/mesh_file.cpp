@@ -35,9 +35,9 @@ std::string expected_number(std::string_view found)
                          : "expected a number in range, found " + quoted(found);
 }
 
-Result<TriangleSoup> finish_soup(const MeshFile& file, std::vector<Vec3> positions,
-                                 const PolygonList& polygons, Context& context)
+Status check_polygons(const MeshFile& file, const PolygonMesh& mesh)
 {
+    const auto& [positions, polygons] = mesh;
     for (std::size_t v = 0; v < positions.size(); ++v)
         if (!is_finite(positions[v]))
             return Error{ErrorCode::bad_geometry,
@@ -52,28 +52,7 @@ Result<TriangleSoup> finish_soup(const MeshFile& file, std::vector<Vec3> positio
     if (polygons.corners.size() >= invalid_index / 3 || positions.size() >= invalid_index)
         return Error{ErrorCode::cannot_read, file.name + ": too many elements for 32-bit indices",
                      invalid_index};
-    TriangleSoup soup;
-    soup.positions = std::move(positions);
-    if (polygons.corners.size() > 2 * polygons.size())
-        soup.triangles.reserve(polygons.corners.size() - 2 * polygons.size());
-    soup.source_face.reserve(soup.triangles.capacity());
-    PolygonTriangulator triangulator(soup.positions, polygons);
-    std::size_t small = 0;
-    for (std::size_t p = 0; p < polygons.size(); ++p) {
-        if (p % elements_per_poll == 0 && context.cancelled())
-            return Context::cancelled_error("read");
-        const std::size_t count = polygons.first[p + 1] - polygons.first[p];
-        small += count < 3;
-        triangulator.triangulate(p, soup.triangles);
-        soup.source_face.resize(soup.triangles.size(), static_cast<Index>(p));
-    }
-    if (small > 0)
-        context.log(LogLevel::warning, file.name + ": left out " + std::to_string(small) +
-                                           " faces with fewer than three corners");
-    if (soup.triangles.empty())
-        return Error{ErrorCode::empty_input, file.name + ": no face has three corners",
-                     invalid_index};
-    return soup;
+    return {};
 }
 
 } // namespace bot2nurbs

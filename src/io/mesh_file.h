@@ -3,7 +3,7 @@
 
 #include "bot2nurbs/context.h"
 #include "bot2nurbs/manifold_mesh.h"
-#include "mesh/triangulate_polygon.h"
+#include "bot2nurbs/polygon_mesh.h"
 
 #include <string>
 #include <string_view>
@@ -16,11 +16,11 @@ struct MeshFile {
     std::string_view bytes;
 };
 
-// One reader a format; read_mesh chooses. Errors as read_mesh.
-Result<TriangleSoup> read_stl(const MeshFile& file, Context& context);
-Result<TriangleSoup> read_obj(const MeshFile& file, Context& context);
-Result<TriangleSoup> read_ply(const MeshFile& file, Context& context);
-Result<TriangleSoup> read_off(const MeshFile& file, Context& context);
+// One reader a format; read_polygons chooses. Errors as there.
+Result<PolygonMesh> read_stl(const MeshFile& file, Context& context);
+Result<PolygonMesh> read_obj(const MeshFile& file, Context& context);
+Result<PolygonMesh> read_ply(const MeshFile& file, Context& context);
+Result<PolygonMesh> read_off(const MeshFile& file, Context& context);
 
 //! Readers ask for cancellation once in so many elements.
 inline constexpr std::size_t elements_per_poll = 65536;
@@ -36,10 +36,8 @@ std::string quoted(std::string_view word);
 //! Says that a number was expected where `found` stands (empty: nothing stands there).
 std::string expected_number(std::string_view found);
 
-//! Turns polygons into triangles with provenance and checks what all formats share: there are
-//! faces, and coordinates are finite. Corners must be in range. Faces with fewer than three corners
-//! are left out with a warning.
-Result<TriangleSoup> finish_soup(const MeshFile& file, std::vector<Vec3> positions,
-                                 const PolygonList& polygons, Context& context);
+//! Checks what all formats share: there are faces, coordinates are finite, and numbers fit an
+//! Index. Corners must be in range.
+Status check_polygons(const MeshFile& file, const PolygonMesh& mesh);
 
 } // namespace bot2nurbs

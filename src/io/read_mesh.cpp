@@ -2,6 +2,7 @@
 #include "bot2nurbs/read_mesh.h"
 
 #include "io/mesh_file.h"
+#include "mesh/triangulate_polygon.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -83,18 +84,13 @@ std::string marked_format(std::string_view bytes)
     return {};
 }
 
-} // namespace
-
-Result<TriangleSoup> read_mesh(const std::string& path, Context& context)
+Result<PolygonMesh> read_format(const std::string& path, const std::string& bytes, Context& context)
 {
-    const Result<std::string> bytes = read_bytes(path, context);
-    if (!bytes)
-        return bytes.error();
-    const MeshFile file{path, *bytes};
-    if (bytes->empty())
+    const MeshFile file{path, bytes};
+    if (bytes.empty())
         return Error{ErrorCode::cannot_read, path + ": the file is empty", invalid_index};
     std::string format = extension(path);
-    const std::string mark = marked_format(*bytes);
+    const std::string mark = marked_format(bytes);
     const bool known = format == "stl" || format == "obj" || format == "ply" || format == "off";
     if (!known) {
         if (mark.empty())
@@ -116,6 +112,48 @@ Result<TriangleSoup> read_mesh(const std::string& path, Context& context)
     if (format == "ply")
         return read_ply(file, context);
     return read_off(file, context);
+}
+
+} // namespace
+
+Result<PolygonMesh> read_polygons(const std::string& path, Context& context)
+{
+    const Result<std::string> bytes = read_bytes(path, context);
+    if (!bytes)
+        return bytes.error();
+    Result<PolygonMesh> mesh = read_format(path, *bytes, context);
+    if (mesh)
+        if (const Status bad = check_polygons({path, *bytes}, *mesh))
+            return *bad;
+    return mesh;
+}
+
+Result<TriangleSoup> read_mesh(const std::string& path, Context& context)
+{
+    Result<PolygonMesh> mesh = read_polygons(path, context);
+    if (!mesh)
+        return mesh.error();
+    const PolygonList& polygons = mesh->polygons;
+    TriangleSoup soup;
+    soup.positions = std::move(mesh->positions);
+    if (polygons.corners.size() > 2 * polygons.size())
+        soup.triangles.reserve(polygons.corners.size() - 2 * polygons.size());
+    soup.source_face.reserve(soup.triangles.capacity());
+    PolygonTriangulator triangulator(soup.positions, polygons);
+    std::size_t small = 0;
+    for (std::size_t p = 0; p < polygons.size(); ++p) {
+        if (p % elements_per_poll == 0 && context.cancelled())
+            return Context::cancelled_error("read");
+        small += polygons.count(p) < 3;
+        triangulator.triangulate(p, soup.triangles);
+        soup.source_face.resize(soup.triangles.size(), static_cast<Index>(p));
+    }
+    if (small > 0)
+        context.log(LogLevel::warning, path + ": left out " + std::to_string(small) +
+                                           " faces with fewer than three corners");
+    if (soup.triangles.empty())
+        return Error{ErrorCode::empty_input, path + ": no face has three corners", invalid_index};
+    return soup;
 }
 
 } // namespace bot2nurbs

@@ -38,7 +38,7 @@ public:
     {
     }
 
-    Result<TriangleSoup> read()
+    Result<PolygonMesh> read()
     {
         for (std::size_t statement = 0; !text_.at_end(); ++statement) {
             if (statement % elements_per_poll == 0 && context_.cancelled())
@@ -60,7 +60,7 @@ public:
         for (const ForwardReference& r : forward_)
             if (r.vertex > positions_.size())
                 return out_of_range(r.line, r.face, std::to_string(r.vertex));
-        return finish_soup(file_, std::move(positions_), polygons_, context_);
+        return PolygonMesh{std::move(positions_), std::move(polygons_)};
     }
 
 private:
@@ -123,7 +123,7 @@ private:
 
 } // namespace
 
-Result<TriangleSoup> read_obj(const MeshFile& file, Context& context)
+Result<PolygonMesh> read_obj(const MeshFile& file, Context& context)
 {
     if (file.bytes.find('\0') != std::string_view::npos)
         return error_at_byte(file, file.bytes.find('\0'), "not text, so not an OBJ file");

@@ -22,7 +22,7 @@ bool is_off_keyword(std::string_view word)
 
 } // namespace
 
-Result<TriangleSoup> read_off(const MeshFile& file, Context& context)
+Result<PolygonMesh> read_off(const MeshFile& file, Context& context)
 {
     TextScanner text(file.bytes, '#');
     if (text.at_end())
@@ -90,7 +90,7 @@ Result<TriangleSoup> read_off(const MeshFile& file, Context& context)
         polygons.close();
         text.skip_line(); // colour
     }
-    return finish_soup(file, std::move(positions), polygons, context);
+    return PolygonMesh{std::move(positions), std::move(polygons)};
 }
 
 } // namespace bot2nurbs

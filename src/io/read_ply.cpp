@@ -112,7 +112,7 @@ public:
     {
     }
 
-    Result<TriangleSoup> read()
+    Result<PolygonMesh> read()
     {
         for (const PlyElement& element : header_.elements)
             if (element.name == "vertex")
@@ -128,7 +128,7 @@ public:
             if (Status bad = read_element(element, least))
                 return *bad;
         }
-        return finish_soup(file_, std::move(positions_), polygons_, context_);
+        return PolygonMesh{std::move(positions_), std::move(polygons_)};
     }
 
 private:
@@ -284,7 +284,7 @@ private:
 
 } // namespace
 
-Result<TriangleSoup> read_ply(const MeshFile& file, Context& context)
+Result<PolygonMesh> read_ply(const MeshFile& file, Context& context)
 {
     const Result<PlyHeader> header = read_ply_header(file);
     if (!header)

@@ -96,7 +96,7 @@ Error not_finite(const MeshFile& file, std::size_t facet, const std::string& whe
             static_cast<Index>(facet)};
 }
 
-Result<TriangleSoup> read_binary(const MeshFile& file, Context& context)
+Result<PolygonMesh> read_binary(const MeshFile& file, Context& context)
 {
     const std::string_view bytes = file.bytes;
     if (bytes.size() < header_bytes)
@@ -132,7 +132,7 @@ Result<TriangleSoup> read_binary(const MeshFile& file, Context& context)
         }
         polygons.close();
     }
-    return finish_soup(file, std::move(merger.positions), polygons, context);
+    return PolygonMesh{std::move(merger.positions), std::move(polygons)};
 }
 
 //! The word in lower case: some writers use capitals.
@@ -145,7 +145,7 @@ std::string lower(std::string_view word)
     return text;
 }
 
-Result<TriangleSoup> read_text(const MeshFile& file, Context& context)
+Result<PolygonMesh> read_text(const MeshFile& file, Context& context)
 {
     TextScanner text(file.bytes, 0);
     VertexMerger merger(3 * (file.bytes.size() / 200)); // a facet takes about 200 characters
@@ -208,12 +208,12 @@ Result<TriangleSoup> read_text(const MeshFile& file, Context& context)
     if (in_solid)
         context.log(LogLevel::warning,
                     file.name + ": no \"endsolid\" at the end; the file may be cut off");
-    return finish_soup(file, std::move(merger.positions), polygons, context);
+    return PolygonMesh{std::move(merger.positions), std::move(polygons)};
 }
 
 } // namespace
 
-Result<TriangleSoup> read_stl(const MeshFile& file, Context& context)
+Result<PolygonMesh> read_stl(const MeshFile& file, Context& context)
 {
     const std::string_view bytes = file.bytes;
     // Binary files may start with "solid", so their size decides first: no text can fit, as four

@@ -80,6 +80,19 @@ ClosestPoint::Hit ClosestPoint::query(const Vec3& p) const
 
 ClosestPoint::Hit ClosestPoint::query(const Vec3& p, double distance_limit) const
 {
+    return search(p, distance_limit, [](const Triangle&) { return true; });
+}
+
+ClosestPoint::Hit ClosestPoint::query_facing(const Vec3& p, const Vec3& direction) const
+{
+    return search(p, INFINITY, [&direction](const Triangle& t) {
+        return dot(cross(t.b - t.a, t.c - t.a), direction) > 0.0;
+    });
+}
+
+template <class Accept> ClosestPoint::Hit ClosestPoint::search(const Vec3& p, double distance_limit,
+                                                               const Accept& accept) const
+{
     Hit hit;
     hit.distance = INFINITY;
     const auto& nodes = tree_->boxes.nodes();
@@ -110,7 +123,8 @@ ClosestPoint::Hit ClosestPoint::query(const Vec3& p, double distance_limit) cons
             continue;
         }
         for (Index i = node.first; i < node.first + node.count; ++i)
-            offer(p, tree_->triangles[i], best, hit);
+            if (accept(tree_->triangles[i]))
+                offer(p, tree_->triangles[i], best, hit);
     }
     if (hit.where.face != invalid_index)
         hit.distance = std::sqrt(best);

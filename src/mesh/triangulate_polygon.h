@@ -2,21 +2,12 @@
 #pragma once
 
 #include "bot2nurbs/manifold_mesh.h"
+#include "bot2nurbs/polygon_mesh.h"
 
 #include <array>
 #include <vector>
 
 namespace bot2nurbs {
-
-//! Polygons as a file lists them: polygon p has corners first[p] .. first[p + 1] - 1.
-struct PolygonList {
-    std::vector<Index> corners;
-    std::vector<std::size_t> first{0};
-
-    std::size_t size() const { return first.size() - 1; }
-    //! Ends the polygon whose corners were just pushed.
-    void close() { first.push_back(corners.size()); }
-};
 
 //! Cuts polygons into triangles.
 //!

@@ -30,8 +30,8 @@ double distance_of_share(const Trial& trial, double share)
     std::vector<double> distances;
     for (const PatchError& p : trial.patches)
         distances.push_back(p.distance);
-    const std::size_t k = std::min(
-        distances.size() - 1, static_cast<std::size_t>(share * double(distances.size())));
+    const std::size_t k =
+        std::min(distances.size() - 1, static_cast<std::size_t>(share * double(distances.size())));
     std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(k),
                      distances.end());
     return distances[k];

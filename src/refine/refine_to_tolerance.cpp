@@ -125,14 +125,15 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
         if (!made)
             return made.error();
         Trial& trial = *made;
+        if (Status failed = prove_trial(source, options.tolerance, trial, context))
+            return *failed;
         result.rounds.push_back(describe(trial, now() - begin));
         const bool is_best = better(result.rounds, result.best);
         if (is_best)
             result.best = static_cast<Index>(result.rounds.size() - 1);
 
         const bool tangent = current.fit.rows == DistanceRows::tangent;
-        const bool stuck =
-            stalled(result.rounds, first, tangent ? tangent_patience : patience);
+        const bool stuck = stalled(result.rounds, first, tangent ? tangent_patience : patience);
         if (trial.bound.upper() <= options.tolerance) {
             end = RefinementEnd::tolerance_met;
         } else if (stuck && tangent) {

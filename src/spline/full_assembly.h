@@ -55,8 +55,8 @@ private:
     std::vector<std::array<Index, 6>> first_row_;
     std::vector<Index> interior_; //!< Per quad: first of its 36 inner unknowns.
 
-    SparseRows recovered_;              //!< Over stencil rows.
-    std::vector<Index> recovery_row_;   //!< Per unknown: its row of recovered_.
+    SparseRows recovered_;            //!< Over stencil rows.
+    std::vector<Index> recovery_row_; //!< Per unknown: its row of recovered_.
 };
 
 } // namespace bot2nurbs

@@ -38,8 +38,8 @@ std::vector<MaskRow> tangents(FanKind kind, Index sectors, double alpha, const M
     }
     if (kind != FanKind::closed) {
         t.front() = u;
-        t.back() = kind == FanKind::corner ? unit(2, 1.0)
-                                           : unit(1, kind == FanKind::smooth ? -1.0 : 1.0);
+        t.back() =
+            kind == FanKind::corner ? unit(2, 1.0) : unit(1, kind == FanKind::smooth ? -1.0 : 1.0);
     }
     return t;
 }

@@ -15,8 +15,8 @@ namespace bot2nurbs {
 //! ring point) where the cosine of the fan is not zero; where it is, only q0 and q1 are its own.
 struct FullMask {
     Index vertex_columns = 0;
-    MaskRow apex;               //!< q0.
-    std::vector<MaskRow> leg;   //!< q1 per edge; over the vertex columns only.
+    MaskRow apex;             //!< q0.
+    std::vector<MaskRow> leg; //!< q1 per edge; over the vertex columns only.
     //! q2 per edge: one ring point; at the last edge of a closed fan of even n >= 6 the alternating
     //! sum of the others, without which the twists would have no solution. Empty for the outer
     //! edges of an open fan, and for all edges of a regular one.

@@ -7,8 +7,7 @@ namespace bot2nurbs {
 FullAssembly::FullAssembly(const QuadComplex& complex)
     : NetworkAssembly(complex), leg_(2 * std::size_t(complex.edge_count()), invalid_index),
       ring_(leg_), twist_(complex.halfedge_count(), invalid_index),
-      curve_unknowns_(2 * std::size_t(complex.edge_count())),
-      first_row_(complex.halfedge_count())
+      curve_unknowns_(2 * std::size_t(complex.edge_count())), first_row_(complex.halfedge_count())
 {
 }
 
@@ -94,9 +93,7 @@ void FullAssembly::add_edge_row(Index edge, Index j)
         }
         break;
     case 5: sum_.add(1.0, fifth); break;
-    default:
-        sum_.add(0.5, fifth);
-        sum_.add(0.5, curve_unknowns_[end ^ 1u][2]);
+    default: sum_.add(0.5, fifth); sum_.add(0.5, curve_unknowns_[end ^ 1u][2]);
     }
     sum_.append_to(pool_);
 }

@@ -49,8 +49,9 @@ void FullAssembly::recover_tangents(const Fan& fan, const std::vector<Signed>& c
     const Index apex = place(fan.sectors[0], 0, 0);
     // The tangent of edge i, times a weight: its first coefficient is two thirds of it away.
     const auto add_tangent = [&](Terms& terms, double weight, Index i) {
-        terms.push_back({1.5 * weight, i < k ? place(fan.sectors[i], 1, 0)
-                                             : place(QuadComplex::prev(fan.sectors.back()), 11, 0)});
+        terms.push_back({1.5 * weight, i < k
+                                           ? place(fan.sectors[i], 1, 0)
+                                           : place(QuadComplex::prev(fan.sectors.back()), 11, 0)});
         terms.push_back({-1.5 * weight, apex});
     };
     if (fan.kind == FanKind::closed) {

@@ -54,6 +54,18 @@ def read_obj(path):
     return vertices, faces
 
 
+CUBE_QUADS = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
+
+
+def cube_obj(centre, half):
+    """A cube of quads."""
+    signs = ((-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1))
+    signs += tuple((x, y, 1) for x, y, _ in signs)
+    lines = ["v " + " ".join(str(c + half * s) for c, s in zip(centre, v)) for v in signs]
+    lines += ["f " + " ".join(str(i + 1) for i in q) for q in CUBE_QUADS]
+    return "\n".join(lines) + "\n"
+
+
 class CliTest(unittest.TestCase):
     def setUp(self):
         scratch = tempfile.TemporaryDirectory()
@@ -198,6 +210,49 @@ class Conversion(CliTest):
         self.assertEqual(warning[0]["element"], result["worst"]["patch"])
         self.assertIn(f"patch {result['worst']['patch']} near", run.stderr)
 
+    def read_report(self, name):
+        report = json.loads((self.folder / name).read_text())
+        rules = json.loads((ROOT / "docs/schema/report.schema.json").read_text())
+        self.assertEqual(schema.errors(report, rules), [])
+        return report
+
+    def test_quads_of_a_file_become_the_patches(self):
+        vertices, _ = read_obj(SPHERE)
+        low = [min(v[k] for v in vertices) for k in range(3)]
+        high = [max(v[k] for v in vertices) for k in range(3)]
+        centre = [(a + b) / 2 for a, b in zip(low, high)]
+        quads = self.write("cube.obj", cube_obj(centre, (high[0] - low[0]) / 2 / math.sqrt(3)))
+        run = self.run_command(
+            SPHERE, "a.3dm", "--layout", "quads=cube.obj", "--json", "report.json"
+        )
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("solid     yes", run.stderr)
+        report = self.read_report("report.json")
+        self.assertEqual(report["options"]["layout"], "quads=cube.obj")
+        self.assertEqual(report["domain"]["source"], "quads")
+        self.assertEqual(report["brep"]["faces"], 6)
+        self.assertLess(report["components"][0]["quads"]["largest_detour"], 2)
+
+        for path in ("a.3dm", "report.json"):
+            (self.folder / path).unlink()
+        quads.write_text(cube_obj([c + 9 for c in centre], 1))
+        self.assert_refused(
+            5, "must lie near its mesh", SPHERE, "a.3dm", "--layout", "quads=cube.obj"
+        )
+
+    def test_a_cage_becomes_its_smooth_surface(self):
+        self.write("cage.obj", cube_obj((0, 0, 0), 1))
+        run = self.run_command("--cage", "cage.obj", "a.step", "--json", "report.json")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("solid     yes", run.stderr)
+        report = self.read_report("report.json")
+        self.assertEqual(report["domain"]["source"], "cage")
+        self.assertEqual(report["brep"]["faces"], 6)
+        self.assertLess(report["continuity"]["max_g1_angle_deg"], 1e-8)
+        for path in ("a.step", "report.json"):
+            (self.folder / path).unlink()
+        self.assert_refused(5, "no quads", "--cage", SPHERE, "a.step")
+
     def test_a_file_that_was_there_is_replaced(self):
         target = self.write("a.3dm", "old")
         self.assertEqual(self.run_command(SPHERE, target).returncode, 0)
@@ -237,6 +292,9 @@ class Usage(CliTest):
         self.assert_usage_error("--threads", SPHERE, "a.3dm", "--threads", "0")
         self.assert_usage_error("--knots", SPHERE, "a.3dm", "--knots", "c2")
         self.assert_usage_error("--archive-version", SPHERE, "a.3dm", "--archive-version", "9")
+        self.assert_usage_error("--layout", SPHERE, "a.3dm", "--layout", "quads")
+        self.assert_usage_error("--layout", SPHERE, "a.3dm", "--layout", "quads=")
+        self.assert_usage_error("--cage", SPHERE, "--check", "--cage")
         self.assert_usage_error("--step-schema", SPHERE, "a.step", "--step-schema", "AP203")
         self.assert_usage_error("unit", SPHERE, "a.step", "--units", "furlong")
         self.assert_usage_error("C1", SPHERE, "a.3dm", "--spline", "eck-hoppe", "--knots", "c1")

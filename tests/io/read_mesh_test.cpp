@@ -211,6 +211,20 @@ TEST(ReadObj, all_forms_of_faces_with_provenance)
     EXPECT_EQ(soup->source_face, (std::vector<Index>{0, 0, 1, 2, 3}));
 }
 
+TEST(ReadPolygons, keeps_the_polygons_that_read_mesh_cuts)
+{
+    const ScratchFile file("polygons.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0.5 0\n"
+                                           "f 1 2 3 4\nf 2 5 3\n");
+    Context context;
+    const Result<PolygonMesh> mesh = read_polygons(file.path(), context);
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    ASSERT_EQ(mesh->polygons.size(), 2u);
+    EXPECT_EQ(mesh->polygons.count(0), 4u);
+    EXPECT_EQ(mesh->polygons.count(1), 3u);
+    EXPECT_EQ(mesh->polygons.corners, (std::vector<Index>{0, 1, 2, 3, 1, 4, 2}));
+    EXPECT_EQ(mesh->positions.size(), 5u);
+}
+
 TEST(ReadObj, faces_may_name_vertices_that_come_later)
 {
     EXPECT_TRUE(read("a.obj", "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"));

@@ -42,6 +42,31 @@ double brute_force(const ManifoldMesh& mesh, const Vec3& p)
     return best;
 }
 
+TEST(ClosestPoint, on_faces_that_turn_a_way_is_the_best_of_these_faces_alone)
+{
+    const ManifoldMesh mesh = fx::icosphere(1);
+    const ClosestPoint closest(mesh);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> coordinate(-1.5, 1.5);
+    const auto point = [&] {
+        const double x = coordinate(random), y = coordinate(random), z = coordinate(random);
+        return Vec3{x, y, z};
+    };
+    for (int i = 0; i < 50; ++i) {
+        const Vec3 p = point(), direction = point();
+        double least = INFINITY;
+        for (Index f = 0; f < mesh.face_count(); ++f)
+            if (dot(mesh.area_vector(f), direction) > 0.0)
+                least = std::min(
+                    least, ClosestPoint(mesh.positions(), {mesh.triangle(f)}).query(p).distance);
+        const ClosestPoint::Hit hit = closest.query_facing(p, direction);
+        EXPECT_EQ(hit.distance, least);
+        EXPECT_GT(dot(mesh.area_vector(hit.where.face), direction), 0.0);
+    }
+    const ClosestPoint one(mesh.positions(), {mesh.triangle(0)});
+    EXPECT_EQ(one.query_facing({}, -1.0 * mesh.area_vector(0)).where.face, invalid_index);
+}
+
 } // namespace
 
 TEST(ClosestPoint, distance_agrees_with_brute_force)

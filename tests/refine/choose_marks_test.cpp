@@ -17,7 +17,7 @@ Trial one_beyond(Index quad, std::array<double, 2> change)
     trial.domain = test::torus_grid().domain;
     trial.patches.resize(trial.domain.complex.quad_count());
     trial.patches[quad].distance = 1.0;
-    trial.patches[quad].beyond = true;
+    trial.patches[quad].exceeds = trial.patches[quad].beyond = true;
     trial.patches[quad].change = change;
     return trial;
 }

@@ -128,7 +128,8 @@ TEST(RefineToTolerance, it_can_be_cancelled)
 
 TEST(LayoutForTolerance, a_smaller_tolerance_starts_from_more_patches_up_to_the_limit)
 {
-    const HandDomain hand = torus();
+    const HandDomain hand = test::genus2_voxels(0, 4);
+    const double diagonal = hand.mesh.box().diagonal();
     const auto patches = [&](double tolerance, Index limit) {
         ToleranceOptions options = options_for(tolerance);
         options.max_patches = limit;
@@ -137,9 +138,9 @@ TEST(LayoutForTolerance, a_smaller_tolerance_starts_from_more_patches_up_to_the_
         EXPECT_TRUE(layout);
         return layout ? layout->domain.complex.quad_count() : 0;
     };
-    const Index few = patches(5e-2, 5000), more = patches(2e-3, 5000);
+    const Index few = patches(0.05 * diagonal, 5000), more = patches(0.003 * diagonal, 5000);
     EXPECT_LT(few, more);
-    EXPECT_LE(patches(2e-3, few), few);
+    EXPECT_LE(patches(0.003 * diagonal, few), few);
 }
 
 } // namespace

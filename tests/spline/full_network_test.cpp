@@ -124,7 +124,8 @@ public:
                 add_law(h, c[h]);
         for (const Fan& fan : fans_of(complex_))
             if (fan.kind == FanKind::smooth) { // the border runs straight through
-                const Index first = fan.sectors.front(), last = QuadComplex::prev(fan.sectors.back());
+                const Index first = fan.sectors.front(),
+                            last = QuadComplex::prev(fan.sectors.back());
                 add({{1, at(first, 1, 0)}, {1, at(last, 11, 0)}, {-2, at(first, 0, 0)}});
             }
         for (Index place = 0; place < name_.size(); ++place)
@@ -199,8 +200,9 @@ private:
 
 TEST(FullNetwork, is_the_whole_space_of_its_smoothness_conditions)
 {
-    std::vector<Domain> domains{cube(),    radial_bipyramid(5), radial_bipyramid(6), torus_grid(3, 3),
-                                star(5),   star(6),             disk_grid(2, 1)};
+    std::vector<Domain> domains{
+        cube(),  radial_bipyramid(5), radial_bipyramid(6), torus_grid(3, 3), star(5),
+        star(6), disk_grid(2, 1)};
     for (Index sectors : {2u, 3u, 4u, 5u})
         domains.push_back(star_sectors(8, 1, sectors));
     for (const Domain& d : feature_domains())
