@@ -119,8 +119,10 @@ Status prove_trial(const ManifoldMesh& source, double tolerance, Trial& trial, C
         trial.bound = std::move(*bound);
         for (Index q = 0; q < complex.quad_count(); ++q) {
             const PatchDistance& known = trial.bound.patches[q];
+            // Feet of samples are found by a local search, and may be farther than the distance.
             PatchError& patch = trial.patches[q];
-            patch.beyond = patch.exceeds;
+            patch.distance = 0.0;
+            patch.exceeds = patch.beyond = false;
             for (const DistanceBounds& d : {known.surface_to_source, known.source_to_surface}) {
                 patch.distance = std::max(patch.distance, d.lower);
                 patch.exceeds = patch.exceeds || d.lower > tolerance;

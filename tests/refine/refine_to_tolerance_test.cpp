@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace bot2nurbs {
@@ -128,19 +129,23 @@ TEST(RefineToTolerance, it_can_be_cancelled)
 
 TEST(LayoutForTolerance, a_smaller_tolerance_starts_from_more_patches_up_to_the_limit)
 {
-    const HandDomain hand = test::genus2_voxels(0, 4);
-    const double diagonal = hand.mesh.box().diagonal();
+    // A sphere with bumps, which take more patches.
+    const HandDomain sphere = test::sphere_cube(0, 24);
+    std::vector<Vec3> positions = sphere.mesh.positions();
+    for (Vec3& p : positions)
+        p *= 1.0 + 0.1 * std::sin(20.0 * p.x) * std::sin(20.0 * p.y) * std::sin(20.0 * p.z);
+    const ManifoldMesh bumpy = *ManifoldMesh::build(std::move(positions), sphere.mesh.triangles());
     const auto patches = [&](double tolerance, Index limit) {
         ToleranceOptions options = options_for(tolerance);
         options.max_patches = limit;
         Context context;
-        const Result<LayoutResult> layout = layout_for_tolerance(hand.mesh, {}, options, context);
+        const Result<LayoutResult> layout = layout_for_tolerance(bumpy, {}, options, context);
         EXPECT_TRUE(layout);
         return layout ? layout->domain.complex.quad_count() : 0;
     };
-    const Index few = patches(0.05 * diagonal, 5000), more = patches(0.003 * diagonal, 5000);
+    const Index few = patches(0.5, 5000), more = patches(1e-2, 5000);
     EXPECT_LT(few, more);
-    EXPECT_LE(patches(0.003 * diagonal, few), few);
+    EXPECT_LE(patches(1e-2, few), few);
 }
 
 } // namespace
