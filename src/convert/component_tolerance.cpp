@@ -66,6 +66,9 @@ Status judge(const ManifoldMesh& source, const QuadComplex& complex, const Splin
         report.distance.upper = std::min(report.distance.upper, decided->upper());
     }
     report.met = report.distance.upper <= report.tolerance;
+    // Coordinates far from the origin are rounded when they are written, which no cut mends.
+    if (!report.met && report.termination == RefinementEnd::tolerance_met)
+        report.termination = RefinementEnd::stalled;
     return {};
 }
 
