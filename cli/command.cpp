@@ -29,13 +29,15 @@ const char* const footer =
     R"(Examples:
   bot2nurbs bunny.off bunny.3dm
   bot2nurbs kitten.obj kitten.step kitten.3dm --patches 200 --json report.json
+  bot2nurbs kitten.obj kitten.step --tolerance 0.1%
   bot2nurbs --check scan.stl
 
 Exit codes:
   0 done                    4 cannot write
   1 internal error          5 input rejected
   2 wrong use               6 a stage failed
-  3 cannot read           130 interrupted)";
+  3 cannot read             7 written, but the tolerance is not met
+                          130 interrupted)";
 
 const std::map<std::string, NormalMode> normal_modes{{"auto", NormalMode::automatic},
                                                      {"given", NormalMode::given},
@@ -136,6 +138,19 @@ std::variant<Command, int> parse_command(int argc, char** argv)
     CLI::Option* patches_option =
         app.add_option("--patches", patches,
                        "Wanted number of patches per component (default: from the shape)")
+            ->type_name("N")
+            ->group(surface);
+    std::string tolerance;
+    CLI::Option* tolerance_option =
+        app.add_option("--tolerance", tolerance,
+                       "Refine until INPUT and surface are proven to be this near each other: a "
+                       "length in units of INPUT, or a percentage of its diagonal")
+            ->type_name("0.05|0.1%")
+            ->group(surface);
+    unsigned max_patches = 0;
+    CLI::Option* max_patches_option =
+        app.add_option("--max-patches", max_patches,
+                       "Most patches per component that --tolerance may use (default: 5000)")
             ->type_name("N")
             ->group(surface);
     std::string layout = "eck";
@@ -322,6 +337,16 @@ std::variant<Command, int> parse_command(int argc, char** argv)
     }
     if (*patches_option)
         o.patches = patches;
+    if (*tolerance_option) {
+        o.tolerance = parse_length(tolerance);
+        if (!o.tolerance) {
+            std::fprintf(stderr, "bot2nurbs: --tolerance %s is neither a length nor a percentage\n",
+                         tolerance.c_str());
+            return exit_code(ErrorCode::bad_option);
+        }
+    }
+    if (*max_patches_option)
+        o.max_patches = max_patches;
     if (*knots_option)
         o.knots = knots;
     if (*domain_in_option)

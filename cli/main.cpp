@@ -13,6 +13,9 @@ namespace bot2nurbs::cli {
 
 namespace {
 
+// All files are written, but a component is not within the tolerance.
+constexpr int exit_tolerance_not_met = 7;
+
 // What Ctrl-C cancels. Read by the signal handler.
 std::atomic<Context*> interruptible{nullptr};
 
@@ -74,9 +77,11 @@ int run_convert(const Command& command, Context& context, Terminal& terminal)
             terminal.line(line);
     for (const std::string& line : summarise(*report))
         terminal.line(line);
-    return command.json.empty()
-               ? 0
-               : put_report(report_to_json(command.options, *report), command.json, terminal);
+    if (!command.json.empty())
+        if (const int code =
+                put_report(report_to_json(command.options, *report), command.json, terminal))
+            return code;
+    return report->tolerance_met() ? 0 : exit_tolerance_not_met;
 }
 
 //! The end of --check and --validate-domain. Their report is the data that was asked for: it goes

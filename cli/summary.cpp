@@ -71,6 +71,12 @@ std::vector<std::string> component_lines(const ComponentOutcome& c, const std::s
     lines.push_back("error     " + error_text(c.deviation, c.diagonal, unit));
     if (c.bound)
         lines.push_back("bound     " + bound_text(*c.bound, c.diagonal, unit));
+    if (c.tolerance)
+        lines.push_back(fmt::format("tolerance {:.4g} {} {}: proven to be within {:.4g} {} "
+                                    "({} rounds)",
+                                    c.tolerance->tolerance, unit,
+                                    c.tolerance->met ? "met" : "not met",
+                                    c.tolerance->distance.upper, unit, c.tolerance->rounds.size()));
     lines.push_back(fmt::format("joins     largest gap {:.2g} {}, largest angle between normals "
                                 "{:.2g} degrees",
                                 c.continuity.max_gap, unit, c.continuity.max_g1_angle_deg));

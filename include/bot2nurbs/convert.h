@@ -59,7 +59,13 @@ struct ConvertOptions {
     std::vector<std::string> outputs;
 
     //! Wanted number of patches of each component; by default chosen from the shape. At least 6.
+    //! With a tolerance: how many to start from.
     std::optional<Index> patches;
+    //! Patches are refined until the distance between input and surface, both ways, is proven to be
+    //! within this, or refinement ends for another reason.
+    std::optional<Length> tolerance;
+    //! With a tolerance: most patches of each component.
+    std::optional<Index> max_patches;
     SplineScheme spline = SplineScheme::peters;
     //! Knots to write; by default those of the paper in .3dm, and in .step and .brep the C1 form,
     //! because CAD kernels take a triple knot for a break.
@@ -122,6 +128,7 @@ struct ConvertOptions {
 //!    checks;
 //! 2. the same bytes for any thread count;
 //! 3. coordinates come out in the place and units they came in.
+//! A tolerance that is not met is no error: the best surface is written, and the report says so.
 //! Cancel through the context. Errors: those of the stages; open_mesh, self_intersecting (with
 //! strict), stale_domain, constraint_conflict,
 //! bad_option, cannot_write.

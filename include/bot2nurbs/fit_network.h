@@ -26,6 +26,10 @@ struct FitOptions {
     //! nearer: a closer fit would follow the noise (Morozov's discrepancy principle).
     double noise = 0.0;
     DistanceRows rows = DistanceRows::tangent;
+    //! Distance at which a sample counts twice: from round to round its weight is multiplied by
+    //! 1 + (distance / emphasis)^2, up to 11. Lowers the largest distance at the cost of the rms.
+    //! 0: all count as their weights say.
+    double emphasis = 0.0;
     bool robust = false; //!< Iteratively reweighted least squares (Huber) against outliers.
     //! Standard deviation, in units of the samples, that robust fits assume at least: what lies
     //! nearer than about this is not taken for an outlier, however well other samples are met.

@@ -9,6 +9,7 @@
 #include "bot2nurbs/hausdorff_bound.h"
 #include "bot2nurbs/layout.h"
 #include "bot2nurbs/layout_quality.h"
+#include "bot2nurbs/refine_to_tolerance.h"
 #include "bot2nurbs/repair_mesh.h"
 #include "bot2nurbs/spline_network.h"
 
@@ -48,6 +49,17 @@ struct FeatureReport {
     std::vector<std::array<Index, 2>> smoothed;
 };
 
+//! What became of the tolerance asked for. Distances in units of the input.
+struct ToleranceReport {
+    double tolerance = 0.0;
+    bool met = false; //!< Proven of the surface as written.
+    RefinementEnd termination = RefinementEnd::tolerance_met;
+    DistanceBounds distance; //!< Of the surface as written, both ways.
+    FarPlace worst;          //!< Where distance.lower is.
+    std::vector<RefinementRound> rounds;
+    Index best = 0; //!< The round that is written.
+};
+
 //! How a mesh of quads became the domain of a component.
 struct QuadsReport {
     double largest_move = 0.0;             //!< Of a vertex of the quads, to its place on the mesh.
@@ -75,9 +87,10 @@ struct ComponentOutcome {
     //! In units of the input. For an input of points the source is the points on the way to the
     //! surface, and the mesh through them on the way back.
     Deviation deviation;
-    std::optional<HausdorffBound> bound; //!< Of the surface as written against the input.
-    CurveDeviations curves;              //!< In units of the input.
-    Continuity continuity;               //!< Of the surface as written.
+    std::optional<HausdorffBound> bound;      //!< Of the surface as written against the input.
+    CurveDeviations curves;                   //!< In units of the input.
+    std::optional<ToleranceReport> tolerance; //!< Where one was asked for.
+    Continuity continuity;                    //!< Of the surface as written.
     BrepReport brep;
     Index brep_faces = 0, brep_edges = 0, brep_vertices = 0;
 };
@@ -106,6 +119,8 @@ struct ConvertReport {
     std::optional<DistanceBounds> distance() const;
     bool valid() const; //!< All B-Reps are; false when none was made.
     bool solid() const; //!< All B-Reps are; false when none was made.
+    //! False when a tolerance was asked for and a component is not proven to be within it.
+    bool tolerance_met() const;
 };
 
 //! The report as JSON: schema "bot2nurbs.report/1", docs/schema/report.schema.json.

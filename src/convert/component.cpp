@@ -5,6 +5,7 @@
 #include "bot2nurbs/domain_samples.h"
 #include "bot2nurbs/layout.h"
 #include "bot2nurbs/point_deviation.h"
+#include "convert/component_tolerance.h"
 #include "convert/constraints_input.h"
 
 #include <algorithm>
@@ -111,7 +112,7 @@ std::vector<FeaturePath> feature_paths(const MeshFeatures& features)
 }
 
 //! What the surface is fitted to: the points, and the mesh where there are none.
-Result<SurfaceSampleSet> point_samples(const ManifoldMesh& unit,
+Result<SurfaceSampleSet> point_samples(const ManifoldMesh& unit, const QuadComplex& complex,
                                        const std::vector<QuadChart>& charts,
                                        const ComponentPoints& points, const Frame& frame,
                                        Index& anchors, Context& context)
@@ -129,6 +130,7 @@ Result<SurfaceSampleSet> point_samples(const ManifoldMesh& unit,
     if (!added)
         return added.error();
     anchors = *added;
+    add_curve_samples(unit, complex, charts, {}, *samples);
     return samples;
 }
 
@@ -214,6 +216,50 @@ void log_rounds(const FitSummary& fit, const Context& context)
     }
 }
 
+Result<SurfaceSampleSet> sample_domain(const ManifoldMesh& source, const QuadComplex& complex,
+                                       const std::vector<QuadChart>& charts, Context& context)
+{
+    Result<SurfaceSampleSet> samples = make_samples(source, charts, {}, context);
+    if (samples)
+        add_curve_samples(source, complex, charts, {}, *samples);
+    return samples;
+}
+
+Result<FitResult> fit_samples(const QuadComplex& complex, SurfaceSampleSet& samples,
+                              const ConvertOptions& options, Context& context)
+{
+    const Result<SplineNetwork> network = build_spline_network(complex, options.spline);
+    if (!network)
+        return network.error();
+    return fit_network(*network, samples, options.fit, context);
+}
+
+//! The edge that is longest over the distance of its ends.
+void find_detour(const QuadDomain& domain, const std::vector<Index>& vertex_names,
+                 QuadsReport& report)
+{
+    const ManifoldMesh& mesh = domain.carrier.mesh;
+    for (const DomainEdge& edge : domain.edges) {
+        const Vec3 start = mesh.position(domain.vertices[edge.a]);
+        const Vec3 end = mesh.position(domain.vertices[edge.b]);
+        Vec3 last = start;
+        double length = 0.0;
+        for (const PathPoint& p : edge.path) {
+            const Vec3 next = p.is_vertex()
+                                  ? mesh.position(p.from)
+                                  : (1.0 - p.t) * mesh.position(p.from) + p.t * mesh.position(p.to);
+            length += norm(next - last);
+            last = next;
+        }
+        length += norm(end - last);
+        const double distance = norm(end - start);
+        if (distance > 0.0 && length > report.largest_detour * distance) {
+            report.largest_detour = length / distance;
+            report.detour_edge = {vertex_names[edge.a], vertex_names[edge.b]};
+        }
+    }
+}
+
 } // namespace
 
 Result<ConvertedComponent> convert_component(const MeshComponent& component, DomainWishes wishes,
@@ -247,6 +293,10 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
     if (!features)
         return features.error();
 
+    std::optional<ToleranceOptions> tolerance;
+    if (wishes.tolerance)
+        tolerance = tolerance_options(options, *wishes.tolerance / frame.size);
+
     stage("layout");
     if (wishes.supplied) {
         result.domain = std::move(*wishes.supplied);
@@ -263,7 +313,10 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
         layout_options.features = feature_paths(*features);
         layout_options.constraints = std::move(wishes.constraints);
         layout_options.seed = options.seed;
-        Result<LayoutResult> layout = build_layout(*unit, layout_options, context);
+        Result<LayoutResult> layout =
+            tolerance && !options.patches
+                ? layout_for_tolerance(*unit, layout_options, *tolerance, context)
+                : build_layout(*unit, layout_options, context);
         if (!layout)
             return layout.error();
         result.domain = std::move(layout->domain);
@@ -278,6 +331,22 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
     outcome.features = describe(*features, component);
     if (Status failed = place_carrier(result.domain.carrier, *unit))
         return *failed;
+    if (outcome.quads)
+        find_detour(result.domain, wishes.quads->source_vertex, *outcome.quads);
+
+    std::optional<FitResult> fit;
+    if (tolerance) {
+        stage("refine");
+        Result<ToleranceFit> refined =
+            refine_to_tolerance(*unit, std::move(result.domain), *tolerance, context);
+        if (!refined)
+            return refined.error();
+        outcome.tolerance = describe(*refined, frame.size);
+        outcome.tolerance->tolerance = *wishes.tolerance;
+        log_rounds(*outcome.tolerance, context);
+        result.domain = std::move(refined->domain);
+        fit = std::move(refined->fit);
+    }
     outcome.domain = describe(result.domain);
 
     stage("charts");
@@ -290,39 +359,30 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
             outcome.layout->exact_maps += chart.level == MapLevel::exact;
         }
     outcome.quality = measure_layout(result.domain, *charts);
-    if (outcome.quads) {
-        const Spread& detours = outcome.quality.straightness;
-        const DomainEdge& longest = result.domain.edges[detours.most_at];
-        outcome.quads->largest_detour = detours.most;
-        outcome.quads->detour_edge = {wishes.quads->source_vertex[longest.a],
-                                      wishes.quads->source_vertex[longest.b]};
-    }
     if (forms.empty())
         return result;
 
-    stage("samples");
-    Result<SurfaceSampleSet> samples =
-        points != nullptr ? point_samples(*unit, *charts, *points, frame, result.anchors, context)
-                          : make_samples(*unit, *charts, {}, context);
-    if (!samples)
-        return samples.error();
-
-    add_curve_samples(*unit, result.domain.complex, *charts, {}, *samples);
-
-    stage("fit");
-    const Result<SplineNetwork> network =
-        build_spline_network(result.domain.complex, options.spline);
-    if (!network)
-        return network.error();
-    FitOptions fit_options = options.fit;
-    if (points != nullptr) {
-        fit_options.robust = true;
-        fit_options.least_deviation = points->least_deviation / frame.size;
-        fit_options.noise = points->noise / frame.size;
+    if (!fit) {
+        stage("samples");
+        Result<SurfaceSampleSet> samples =
+            points != nullptr ? point_samples(*unit, result.domain.complex, *charts, *points, frame,
+                                              result.anchors, context)
+                              : sample_domain(*unit, result.domain.complex, *charts, context);
+        if (!samples)
+            return samples.error();
+        stage("fit");
+        ConvertOptions fit_options = options;
+        if (points != nullptr) {
+            fit_options.fit.robust = true;
+            fit_options.fit.least_deviation = points->least_deviation / frame.size;
+            fit_options.fit.noise = points->noise / frame.size;
+        }
+        Result<FitResult> fitted =
+            fit_samples(result.domain.complex, *samples, fit_options, context);
+        if (!fitted)
+            return fitted.error();
+        fit = std::move(*fitted);
     }
-    Result<FitResult> fit = fit_network(*network, *samples, fit_options, context);
-    if (!fit)
-        return fit.error();
     outcome.fit = std::move(fit->summary);
     to_input_units(outcome.fit, frame);
     log_rounds(outcome.fit, context);
@@ -356,6 +416,12 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
             return bound.error();
         outcome.bound = *bound;
         use_proven(outcome.deviation, *bound);
+        if (outcome.tolerance) {
+            if (Status failed = judge(component.mesh, result.domain.complex, result.surface, *bound,
+                                      *outcome.tolerance, context))
+                return *failed;
+            outcome.fit.termination = name(outcome.tolerance->termination);
+        }
     }
 
     stage("brep");

@@ -32,6 +32,8 @@ struct DomainWishes {
     std::optional<QuadDomain> supplied; //!< Replaces the automatic layout.
     std::optional<QuadMesh> quads;      //!< Become it, in the coordinates of the input.
     DomainConstraints constraints;      //!< Bind the automatic layout.
+    //! Largest distance wanted, in units of the input: refines the domain.
+    std::optional<double> tolerance;
 };
 
 //! Converts one component. No knot forms asked for: stops after the domain. `points`, unless null,

@@ -136,6 +136,38 @@ void add_input_warnings(const PreparedInput& input, ConvertReport& report)
                  input.mesh.components[c].source_face.front()});
 }
 
+//! Why refinement ended, for a sentence.
+const char* reason(RefinementEnd end)
+{
+    switch (end) {
+    case RefinementEnd::tolerance_met: return "rounding of the coordinates is more";
+    case RefinementEnd::patch_limit: return "it takes more patches than --max-patches allows";
+    case RefinementEnd::stalled: return "more patches did not bring the surface nearer";
+    case RefinementEnd::quality_limit: return "a patch could not be cut any further";
+    }
+    return "";
+}
+
+//! A warning for each component that is not within the tolerance.
+void add_tolerance_warnings(ConvertReport& report)
+{
+    for (std::size_t c = 0; c < report.components.size(); ++c) {
+        const std::optional<ToleranceReport>& t = report.components[c].tolerance;
+        if (!t || t->met)
+            continue;
+        const Vec3& p = t->worst.point;
+        report.warnings.push_back(
+            {"tolerance_not_met",
+             fmt::format("{}the tolerance of {:.4g} {} is not met: {}. The surface is between "
+                         "{:.4g} and {:.4g} {} away, most at patch {} near ({:.6g}, {:.6g}, "
+                         "{:.6g})",
+                         report.components.size() > 1 ? fmt::format("component {}: ", c + 1) : "",
+                         t->tolerance, report.units, reason(t->termination), t->distance.lower,
+                         t->distance.upper, report.units, t->worst.surface.quad, p.x, p.y, p.z),
+             t->worst.surface.quad});
+    }
+}
+
 //! Warnings about what became of the shape: open surfaces, creases that were rounded.
 void add_outcome_warnings(const ConvertOptions& options, ConvertReport& report)
 {
@@ -279,6 +311,13 @@ std::optional<Error> ConvertOptions::check() const
     if (patches && *patches < fewest_patches)
         return bad_option(
             fmt::format("--patches {} is too few: at least {}", *patches, fewest_patches));
+    if (tolerance && !(tolerance->value > 0.0 && std::isfinite(tolerance->value)))
+        return bad_option("--tolerance must be a positive length or percentage");
+    if (max_patches && !tolerance)
+        return bad_option("--max-patches limits what --tolerance may use: it needs one");
+    if (max_patches && *max_patches < patches.value_or(fewest_patches))
+        return bad_option(fmt::format("--max-patches {} is too few: at least {}", *max_patches,
+                                      patches.value_or(fewest_patches)));
     if (std::optional<Error> failed = check_layout(*this))
         return failed;
     if (fill_holes && !(fill_holes->value >= 0.0 && std::isfinite(fill_holes->value)))
@@ -380,6 +419,8 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
 
     std::vector<ComponentPoints> points;
     if (input->cloud) {
+        if (options.tolerance)
+            return bad_option("--tolerance is about meshes: leave it out for an input of points");
         Result<std::vector<ComponentPoints>> shared =
             points_of_components(*input->cloud, mesh, report.cloud->off_mesh, context);
         if (!shared)
@@ -398,6 +439,8 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
             wishes.quads = std::move(quads[c]);
         wishes.constraints = std::move(constraints[c]);
         const std::string suffix = count > 1 ? fmt::format(" {}/{}", c + 1, count) : "";
+        if (options.tolerance)
+            wishes.tolerance = options.tolerance->of(report.diagonal);
         Result<ConvertedComponent> converted =
             convert_component(mesh.components[c], std::move(wishes),
                               input->cloud ? &points[c] : nullptr, options, forms, suffix, context);
@@ -420,6 +463,7 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
     add_outcome_warnings(options, report);
     if (report.cloud)
         add_point_deviation(components, report.diagonal, *report.cloud);
+    add_tolerance_warnings(report);
     add_detour_warnings(report);
     if (context.cancelled())
         return Context::cancelled_error("write");

@@ -80,6 +80,9 @@ Json options_json(const ConvertOptions& o)
 {
     Json j;
     j["patches"] = o.patches ? Json(*o.patches) : Json(nullptr);
+    j["tolerance"] = o.tolerance ? Json(o.tolerance->value) : Json(nullptr);
+    j["tolerance_relative"] = o.tolerance && o.tolerance->relative;
+    j["max_patches"] = o.max_patches ? Json(*o.max_patches) : Json(nullptr);
     j["spline"] = name_of(o.spline);
     j["knots"] = knots_name(o.knots);
     j["rounds"] = o.fit.max_rounds;
@@ -263,6 +266,32 @@ Json curve_json(const CurveDeviation& c)
             {"surface_to_source", side_json(c.surface_to_source)}};
 }
 
+Json tolerance_json(const ToleranceReport& t)
+{
+    Json j;
+    j["tolerance"] = t.tolerance;
+    j["tolerance_met"] = t.met;
+    j["termination"] = name(t.termination);
+    j["lower_bound"] = t.distance.lower;
+    j["upper_bound"] = t.distance.upper;
+    j["worst"] = {{"patch", index_or_null(t.worst.surface.quad)},
+                  {"u", t.worst.surface.u},
+                  {"v", t.worst.surface.v},
+                  {"point", point_json(t.worst.point)},
+                  {"distance", t.worst.distance}};
+    j["best"] = t.best;
+    j["rounds"] = Json::array();
+    for (const RefinementRound& r : t.rounds)
+        j["rounds"].push_back({{"patches", r.patches},
+                               {"unknowns", r.unknowns},
+                               {"rms", r.rms},
+                               {"lower_bound", r.distance.lower},
+                               {"upper_bound", r.distance.upper},
+                               {"beyond", r.beyond},
+                               {"seconds", r.seconds}});
+    return j;
+}
+
 Json component_json(const ComponentOutcome& c, const std::string& unit)
 {
     Json j;
@@ -288,6 +317,8 @@ Json component_json(const ComponentOutcome& c, const std::string& unit)
         if (c.bound)
             bounds = DistanceBounds{c.bound->lower(), c.bound->upper()};
         j["deviation"] = deviation_json(c.deviation, bounds, c.diagonal, unit);
+        if (c.tolerance)
+            j["tolerance"] = tolerance_json(*c.tolerance);
         j["deviation"]["worst_patch"] = index_or_null(c.deviation.worst_patch);
         if (c.bound)
             add_bound(j["deviation"], *c.bound);
@@ -365,6 +396,15 @@ FitSummary all_fits(const std::vector<ComponentOutcome>& components)
         sum.used_fallback = sum.used_fallback || c.fit.used_fallback;
     }
     return sum;
+}
+
+//! Of the first component that is not within the tolerance, else that it is met.
+RefinementEnd termination(const std::vector<ComponentOutcome>& components)
+{
+    for (const ComponentOutcome& c : components)
+        if (c.tolerance && !c.tolerance->met)
+            return c.tolerance->termination;
+    return RefinementEnd::tolerance_met;
 }
 
 Json all_breps(const ConvertReport& report)
@@ -461,6 +501,12 @@ bool ConvertReport::solid() const
                        [](const ComponentOutcome& c) { return c.brep.solid; });
 }
 
+bool ConvertReport::tolerance_met() const
+{
+    return std::all_of(components.begin(), components.end(),
+                       [](const ComponentOutcome& c) { return !c.tolerance || c.tolerance->met; });
+}
+
 std::string report_to_json(const ConvertOptions& options, const ConvertReport& report)
 {
     Json j;
@@ -474,6 +520,10 @@ std::string report_to_json(const ConvertOptions& options, const ConvertReport& r
         j["fit"] = fit_json(all_fits(report.components));
         j["deviation"] =
             deviation_json(report.deviation(), report.distance(), report.diagonal, report.units);
+        if (options.tolerance) {
+            j["fit"]["termination"] = name(termination(report.components));
+            j["fit"]["tolerance_met"] = report.tolerance_met();
+        }
         j["continuity"] = continuity_json(all_joins(report.components));
         j["brep"] = all_breps(report);
         // No test of our own decides this yet; the report must not claim more.

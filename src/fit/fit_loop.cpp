@@ -35,6 +35,9 @@ constexpr double sparse_fairness = 1e-4;
 constexpr double sparse_power = 5.0;
 //! Huber's constant: 95 % efficiency for normal errors.
 constexpr double huber = 1.345;
+//! Largest addition to the weight of a sample for its distance: beyond, single samples that no
+//! surface of the network can reach would take hold of it.
+constexpr double most_emphasis = 10.0;
 //! Standard deviation of normal errors over their median absolute value.
 constexpr double mad_to_deviation = 1.4826;
 //! Distances below this share of the box are rounding, not noise, and get full weight.
@@ -189,10 +192,17 @@ std::vector<FitRow> FitLoop::rows_at(const State& state, const std::vector<doubl
     return rows;
 }
 
-std::vector<double> FitLoop::robust_factors(const State& state) const
+std::vector<double> FitLoop::distance_factors(const State& state) const
 {
     std::vector<double> factors(points.size(), 1.0);
-    if (!options_.robust || state.feet.empty())
+    if (state.feet.empty())
+        return factors;
+    if (emphasis > 0.0)
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const double ratio = state.feet[i].distance / emphasis;
+            factors[i] += std::min(most_emphasis, ratio * ratio);
+        }
+    if (!options_.robust)
         return factors;
     std::vector<double> distance(points.size());
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -201,7 +211,7 @@ std::vector<double> FitLoop::robust_factors(const State& state) const
         std::max({mad_to_deviation * median(distance), least_deviation, options_.least_deviation});
     for (std::size_t i = 0; i < points.size(); ++i)
         if (distance[i] > huber * deviation)
-            factors[i] = huber * deviation / distance[i];
+            factors[i] *= huber * deviation / distance[i];
     return factors;
 }
 
@@ -311,7 +321,7 @@ Status FitLoop::raise_to_noise(State& state)
 Status FitLoop::next_round(State& state, double& mu, bool& stuck)
 {
     scale_fairness(summary.rounds.back().rms > options_.noise ? fairness_decay : 1.0);
-    const std::vector<double> factors = robust_factors(state);
+    const std::vector<double> factors = distance_factors(state);
     for (int answers = 0;;) {
         NormalSystem::Solution solution = solve(state, rows_at(state, factors), mu);
         if (context_.cancelled())

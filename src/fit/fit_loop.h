@@ -22,6 +22,7 @@ public:
     std::vector<double> weights;
     std::vector<Vec3> normals;  //!< Unit normals of the source; may be empty.
     std::vector<char> on_curve; //!< As in SurfaceSampleSet.
+    double emphasis = 0.0;      //!< As in FitOptions.
     // In and out.
     std::vector<DomainPoint> where;
     // Out.
@@ -54,8 +55,8 @@ private:
     void find_feet(State& state) const;
     //! Rows of all samples, as the fold response wants them.
     std::vector<FitRow> rows_at(const State& state, const std::vector<double>& factors) const;
-    //! Huber weights from the distances; all one unless robust.
-    std::vector<double> robust_factors(const State& state) const;
+    //! What the distances make of the weights: more with emphasis, less where robust.
+    std::vector<double> distance_factors(const State& state) const;
     double objective(const State& state, const std::vector<double>& factors) const;
     //! First round: rows by area, as the samples say.
     void weigh_by_samples();

@@ -58,6 +58,8 @@ std::optional<Error> FitOptions::check() const
         return bad("fit: noise must not be negative");
     if (!(least_deviation >= 0.0) || !std::isfinite(least_deviation))
         return bad("fit: least_deviation must not be negative");
+    if (!(emphasis >= 0.0) || !std::isfinite(emphasis))
+        return bad("fit: emphasis must not be negative");
     if (!(stall >= 0.0 && stall < 1.0))
         return bad("fit: stall must be in [0, 1)");
     if (!(condition_limit >= 1.0))
@@ -97,6 +99,7 @@ Result<FitResult> fit_network(const SplineNetwork& network, SurfaceSampleSet& sa
         loop.points[i] = (samples.positions[i] - center) / extent;
         loop.weights[i] = samples.weights[i] / weight_sum;
     }
+    loop.emphasis = options.emphasis / extent;
     loop.where = samples.domain;
     loop.normals = samples.normals;
     loop.on_curve = samples.on_curve;

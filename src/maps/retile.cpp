@@ -2,6 +2,7 @@
 #include "maps/retile.h"
 
 #include "core/predicates.h"
+#include "maps/crossings.h"
 
 #include <algorithm>
 #include <cassert>
@@ -10,13 +11,6 @@
 namespace bot2nurbs {
 
 namespace {
-
-// A crossing keeps this share of its stretch's length from both ends and from its neighbours, so
-// that pieces of faces do not degenerate. The order of crossings matters, their exact place does
-// not.
-constexpr double crossing_margin = 0.02;
-// Stretches shorter than this share of their edge hold no further crossing.
-constexpr double min_stretch = 1e-9;
 
 // Parameter on a mesh edge of an overlay vertex, if it lies on that edge.
 std::optional<double> parameter_on(const ManifoldMesh& mesh, const Overlay::Vertex& v, Index edge)
@@ -166,25 +160,18 @@ std::optional<std::vector<SurfacePath>> draw_segments(const ManifoldMesh& mesh,
             return crosses_before(uv, segments[p.segment], segments[q.segment], p.high);
         return p.position < q.position;
     });
+    std::vector<double> t;
     for (std::size_t i = 0; i < hits.size();) {
         std::size_t j = i + 1;
         while (j < hits.size() && hits[j].low == hits[i].low && hits[j].high == hits[i].high)
             ++j;
-        const double low = hits[i].t_low, width = hits[i].t_high - low;
-        if (width < min_stretch)
+        t.clear();
+        for (std::size_t k = i; k < j; ++k)
+            t.push_back(hits[k].t);
+        if (!keep_apart(t, hits[i].t_low, hits[i].t_high))
             return std::nullopt;
-        const double count = static_cast<double>(j - i);
-        const double gap = width * std::min(crossing_margin, 0.5 / (count + 1.0));
-        double at_least = low + gap;
-        bool ordered = true;
-        for (std::size_t k = i; k < j; ++k) {
-            hits[k].t = std::max(hits[k].t, at_least);
-            at_least = hits[k].t + gap;
-            ordered = ordered && at_least <= hits[i].t_high;
-        }
-        if (!ordered)
-            for (std::size_t k = i; k < j; ++k)
-                hits[k].t = low + width * static_cast<double>(k - i + 1) / (count + 1.0);
+        for (std::size_t k = i; k < j; ++k)
+            hits[k].t = t[k - i];
         i = j;
     }
     std::sort(hits.begin(), hits.end(), [](const Hit& p, const Hit& q) {

@@ -174,6 +174,42 @@ class Conversion(CliTest):
         self.assertTrue(20 / 1.5 <= counts[0] <= 20 * 1.5, counts)
         self.assertTrue(80 / 1.5 <= counts[1] <= 80 * 1.5, counts)
 
+    def test_a_tolerance_is_met_by_a_proven_bound(self):
+        for tolerance, relative in (("0.5%", True), ("0.02", False)):
+            run = self.run_command(SPHERE, "a.step", "--tolerance", tolerance, "--json", "-")
+            self.assertEqual(run.returncode, 0, run.stderr)
+            report = json.loads(run.stdout)
+            rules = json.loads((ROOT / "docs/schema/report.schema.json").read_text())
+            self.assertEqual(schema.errors(report, rules), [])
+            wanted = 0.005 * report["deviation"]["diagonal"] if relative else 0.02
+            self.assertTrue(report["fit"]["tolerance_met"])
+            self.assertEqual(report["fit"]["termination"], "tolerance_met")
+            result = report["components"][0]["tolerance"]
+            self.assertAlmostEqual(result["tolerance"], wanted, delta=1e-12)
+            self.assertLessEqual(result["upper_bound"], result["tolerance"])
+            self.assertEqual(result["rounds"][result["best"]]["patches"], report["brep"]["faces"])
+            self.assertEqual(result["rounds"][result["best"]]["beyond"], 0)
+
+    def test_a_tolerance_that_is_not_met_is_exit_code_7_and_says_where(self):
+        run = self.run_command(
+            SPHERE, "a.3dm", "--tolerance", "1e-5%", "--max-patches", "40", "--json", "-"
+        )
+        self.assertEqual(run.returncode, 7, run.stderr)
+        self.assertTrue((self.folder / "a.3dm").is_file())
+        report = json.loads(run.stdout)
+        rules = json.loads((ROOT / "docs/schema/report.schema.json").read_text())
+        self.assertEqual(schema.errors(report, rules), [])
+        self.assertFalse(report["fit"]["tolerance_met"])
+        self.assertEqual(report["fit"]["termination"], "patch_limit")
+        self.assertTrue(report["brep"]["solid"])
+        self.assertLessEqual(report["brep"]["faces"], 40)
+        result = report["components"][0]["tolerance"]
+        self.assertGreater(result["worst"]["distance"], result["tolerance"])
+        warning = [w for w in report["warnings"] if w["code"] == "tolerance_not_met"]
+        self.assertEqual(len(warning), 1)
+        self.assertEqual(warning[0]["element"], result["worst"]["patch"])
+        self.assertIn(f"patch {result['worst']['patch']} near", run.stderr)
+
     def read_report(self, name):
         report = json.loads((self.folder / name).read_text())
         rules = json.loads((ROOT / "docs/schema/report.schema.json").read_text())
@@ -246,6 +282,13 @@ class Usage(CliTest):
         self.assert_usage_error("--patches", SPHERE, "a.3dm", "--patches", "many")
         self.assert_usage_error("--patches", SPHERE, "a.3dm", "--patches", "2")
         self.assert_usage_error("--patches", SPHERE, "a.3dm", "--patches", "-7")
+        self.assert_usage_error("--tolerance", SPHERE, "a.3dm", "--tolerance", "fine")
+        self.assert_usage_error("--tolerance", SPHERE, "a.3dm", "--tolerance", "0")
+        self.assert_usage_error("--tolerance", SPHERE, "a.3dm", "--tolerance", "-1%")
+        self.assert_usage_error("--tolerance", SPHERE, "a.3dm", "--max-patches", "100")
+        self.assert_usage_error(
+            "--max-patches", SPHERE, "a.3dm", "--tolerance", "1%", "--max-patches", "3"
+        )
         self.assert_usage_error("--threads", SPHERE, "a.3dm", "--threads", "0")
         self.assert_usage_error("--knots", SPHERE, "a.3dm", "--knots", "c2")
         self.assert_usage_error("--archive-version", SPHERE, "a.3dm", "--archive-version", "9")

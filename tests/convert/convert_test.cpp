@@ -40,6 +40,47 @@ TEST_F(ConvertTest, a_supplied_domain_becomes_a_solid_in_every_format)
     EXPECT_EQ(read_file(path("a.step")).substr(0, 12), "ISO-10303-21");
 }
 
+TEST_F(ConvertTest, a_tolerance_refines_a_supplied_domain_and_the_report_proves_it)
+{
+    // In the units of the input, far from the origin.
+    ConvertOptions options = options_for({moved(torus_grid(4, 3, 24), 10.0, {500, 0, 0})});
+    options.outputs = {path("a.3dm")};
+    options.tolerance = Length{0.011, false};
+    Context context;
+    const Result<ConvertReport> report = convert(options, context);
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_TRUE(report->tolerance_met());
+    const ComponentOutcome& c = report->components[0];
+    ASSERT_TRUE(c.tolerance);
+    EXPECT_EQ(c.tolerance->termination, RefinementEnd::tolerance_met);
+    EXPECT_LE(c.tolerance->distance.upper, 0.011);
+    EXPECT_GT(c.tolerance->rounds.front().distance.lower, 0.011);
+    EXPECT_GT(c.brep_faces, 12u);
+    EXPECT_EQ(c.brep_faces, c.tolerance->rounds[c.tolerance->best].patches);
+    EXPECT_TRUE(report->solid());
+    EXPECT_LE(c.continuity.max_g1_angle_deg, 1e-8);
+}
+
+TEST_F(ConvertTest, a_tolerance_that_is_not_met_writes_the_best_surface_and_warns_where)
+{
+    ConvertOptions options = options_for({torus_grid(4, 3, 12)});
+    options.outputs = {path("a.3dm")};
+    options.tolerance = Length{1e-6, true};
+    options.max_patches = 30;
+    Context context;
+    const Result<ConvertReport> report = convert(options, context);
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_FALSE(report->tolerance_met());
+    EXPECT_EQ(report->outputs.size(), 1u);
+    const ComponentOutcome& c = report->components[0];
+    EXPECT_EQ(c.tolerance->termination, RefinementEnd::patch_limit);
+    EXPECT_LE(c.brep_faces, 30u);
+    ASSERT_FALSE(report->warnings.empty());
+    EXPECT_EQ(report->warnings.back().code, "tolerance_not_met");
+    EXPECT_EQ(report->warnings.back().element, c.tolerance->worst.surface.quad);
+    EXPECT_GT(c.tolerance->worst.distance, c.tolerance->tolerance);
+}
+
 TEST_F(ConvertTest, a_mesh_of_genus_two_keeps_its_genus)
 {
     ConvertOptions options = options_for({genus2_voxels()});
@@ -302,6 +343,8 @@ TEST_F(ConvertTest, options_that_cannot_work_are_refused_before_anything_is_read
               }),
               "bad_option");
     EXPECT_EQ(code_of([](ConvertOptions& o) { o.patches = 5; }), "bad_option");
+    EXPECT_EQ(code_of([](ConvertOptions& o) { o.tolerance = Length{0.0, true}; }), "bad_option");
+    EXPECT_EQ(code_of([](ConvertOptions& o) { o.max_patches = 100; }), "bad_option");
     EXPECT_EQ(code_of([](ConvertOptions& o) { o.fit.max_rounds = 0; }), "bad_option");
     EXPECT_EQ(code_of([](ConvertOptions& o) { o.write.units = "furlong"; }), "bad_option");
     EXPECT_EQ(code_of([](ConvertOptions& o) { o.write.archive_version = 71; }), "bad_option");

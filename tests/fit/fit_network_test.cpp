@@ -201,6 +201,34 @@ TEST(FitNetwork, follows_the_heavier_of_two_contradicting_samples)
     }
 }
 
+TEST(FitNetwork, emphasis_evens_out_the_distances_of_contradicting_samples)
+{
+    // Every place is sampled twice, on spheres of radius 1 and, nine times as heavy, 1.1.
+    const Target target = sphere_target(1);
+    SurfaceSampleSet samples = sample_target(target), outer = samples;
+    for (std::size_t i = 0; i < outer.size(); ++i) {
+        samples.positions.push_back(1.1 * outer.positions[i]);
+        samples.normals.push_back(outer.normals[i]);
+        samples.weights.push_back(9.0 * outer.weights[i]);
+        samples.domain.push_back(outer.domain[i]);
+    }
+    FitOptions options;
+    options.emphasis = 0.1;
+    const Fit f = fit(target.domain, std::move(samples), options);
+    // The radius at which the weights, multiplied by 1 + (distance / 0.1)^2, are in balance.
+    double radius = 1.09;
+    for (int i = 0; i < 100; ++i) {
+        const double in = radius - 1.0, out = 1.1 - radius;
+        const double a = 1.0 + 100.0 * in * in, b = 9.0 * (1.0 + 100.0 * out * out);
+        radius = (a + 1.1 * b) / (a + b);
+    }
+    double mean = 0.0;
+    for (Index q = 0; q < 24; ++q)
+        mean += norm(f.result.surface.position({q, 0.4, 0.6})) / 24.0;
+    EXPECT_LT(radius, 1.086);
+    EXPECT_NEAR(mean, radius, 1e-3);
+}
+
 TEST(FitNetwork, robust_rounds_ignore_outliers)
 {
     const Target target = sphere_target(1);
@@ -393,6 +421,9 @@ TEST(FitNetwork, names_what_is_wrong_with_options_and_samples)
     EXPECT_EQ(code(good, options).code, ErrorCode::bad_option);
     options = {};
     options.fairness_floor = 1.0;
+    EXPECT_EQ(code(good, options).code, ErrorCode::bad_option);
+    options = {};
+    options.emphasis = -1.0;
     EXPECT_EQ(code(good, options).code, ErrorCode::bad_option);
     options = {};
     options.stall = 1.0;

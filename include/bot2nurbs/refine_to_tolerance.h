@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bot2nurbs/context.h"
+#include "bot2nurbs/domain_samples.h"
+#include "bot2nurbs/fit_network.h"
+#include "bot2nurbs/hausdorff_bound.h"
+#include "bot2nurbs/layout.h"
+#include "bot2nurbs/quad_domain.h"
+#include "bot2nurbs/spline_network.h"
+
+#include <optional>
+#include <vector>
+
+namespace bot2nurbs {
+
+//! What refine_to_tolerance() may spend, and on what.
+struct ToleranceOptions {
+    //! Largest distance wanted between source and surface, both ways, in units of the source; > 0.
+    double tolerance = 0.0;
+    //! No domain of more patches is made. The default keeps the factors of a fit within a few
+    //! gigabytes.
+    Index max_patches = 5000;
+    SplineScheme spline = SplineScheme::peters;
+    //! Of each fit; its emphasis is chosen here. Tangent-distance rows need fewer patches, but may
+    //! let samples slide off parts of patches, where the surface then strays: when refinement
+    //! stalls with them it goes on with point-distance rows.
+    FitOptions fit;
+    SampleOptions samples;
+
+    std::optional<Error> check() const;
+};
+
+//! Why refinement ended.
+enum class RefinementEnd {
+    tolerance_met, //!< Proven: the upper bound of the distance both ways is within the tolerance.
+    patch_limit,   //!< No patch that is beyond tolerance can be cut within max_patches.
+    stalled,       //!< Several rounds have lowered neither the distance nor what is beyond it.
+    quality_limit, //!< A patch that is beyond tolerance cannot be cut.
+};
+
+//! The name of an end as reports write it.
+const char* name(RefinementEnd end);
+
+//! One round: a fit to one domain, and what is known of its distance from the source. Distances in
+//! units of the source.
+struct RefinementRound {
+    Index patches = 0, unknowns = 0;
+    double rms = 0.0;        //!< Of the samples, weighted by area.
+    DistanceBounds distance; //!< Both ways, as far as deciding about the tolerance needed it.
+    Index beyond = 0;        //!< Patches that are not known to be within the tolerance.
+    double seconds = 0.0;    //!< Including the cutting that led to its domain.
+};
+
+//! The best surface of all rounds: the first that is within the tolerance, else the one whose
+//! largest known distance is least.
+struct ToleranceFit {
+    QuadDomain domain;
+    FitResult fit;
+    HausdorffBound bound; //!< Decided about the tolerance, see HausdorffOptions::decide.
+    std::vector<RefinementRound> rounds;
+    Index best = 0; //!< The round it is of.
+    RefinementEnd termination = RefinementEnd::tolerance_met;
+};
+
+//! Fits a spline surface within a tolerance of a mesh, on a domain refined where it must be: fit,
+//! bound the distance of every patch, cut the patches that are beyond, close the marks, cut the
+//! domain, and fit again. How, and why it ends: docs/algorithms/refinement.md. Cost: that of the
+//! last fit times a small number, as the patches grow by a share each round. Same result for any
+//! number of threads. \cite eck_hoppe_1996
+//!
+//! \pre the domain is valid. Errors: bad_option; those of compute_charts(), make_samples(),
+//! build_spline_network(), fit_network(), bound_hausdorff(); cancelled.
+Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain start,
+                                         const ToleranceOptions& options, Context& context);
+
+//! A layout to start from: the coarsest of a few, each a share finer than the last, of whose
+//! patches nine tenths are within the tolerance; else the finest within max_patches, or the last
+//! before more patches gained nothing. Cutting patches of a layout that is too coarse nearly
+//! everywhere would copy their shapes, and need more of them. `layout.patches` is not used. Errors:
+//! bad_option; those of build_layout() and of refine_to_tolerance().
+Result<LayoutResult> layout_for_tolerance(const ManifoldMesh& source, LayoutOptions layout,
+                                          const ToleranceOptions& options, Context& context);
+
+} // namespace bot2nurbs

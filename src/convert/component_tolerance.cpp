@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "convert/component_tolerance.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace bot2nurbs {
+
+namespace {
+
+//! What refinement aims at, over what was asked for: room for rounding on the way to the units of
+//! the input, and for ties of the bound.
+constexpr double aim = 1.0 - 1e-5;
+
+} // namespace
+
+ToleranceOptions tolerance_options(const ConvertOptions& options, double tolerance)
+{
+    ToleranceOptions result;
+    result.tolerance = aim * tolerance;
+    if (options.max_patches)
+        result.max_patches = *options.max_patches;
+    result.spline = options.spline;
+    result.fit = options.fit;
+    return result;
+}
+
+ToleranceReport describe(const ToleranceFit& fit, double scale)
+{
+    ToleranceReport report;
+    report.termination = fit.termination;
+    report.rounds = fit.rounds;
+    report.best = fit.best;
+    for (RefinementRound& round : report.rounds) {
+        round.rms *= scale;
+        round.distance.lower *= scale;
+        round.distance.upper *= scale;
+    }
+    return report;
+}
+
+void log_rounds(const ToleranceReport& report, const Context& context)
+{
+    for (std::size_t i = 0; i < report.rounds.size(); ++i) {
+        const RefinementRound& r = report.rounds[i];
+        context.log(LogLevel::info,
+                    fmt::format("refinement round {}: {} patches, rms {:.4g}, distance at least "
+                                "{:.4g} and at most {:.4g}, {} patches beyond tolerance, {:.2f} s",
+                                i + 1, r.patches, r.rms, r.distance.lower, r.distance.upper,
+                                r.beyond, r.seconds));
+    }
+}
+
+Status judge(const ManifoldMesh& source, const QuadComplex& complex, const SplineSurface& surface,
+             const HausdorffBound& bound, ToleranceReport& report, Context& context)
+{
+    report.distance = {bound.lower(), bound.upper()};
+    report.worst = bound.worse_side().worst;
+    if (bound.lower() <= report.tolerance && bound.upper() > report.tolerance) {
+        HausdorffOptions options;
+        options.decide = report.tolerance;
+        const Result<HausdorffBound> decided =
+            bound_hausdorff(source, complex, surface, options, context);
+        if (!decided)
+            return decided.error();
+        report.distance.upper = std::min(report.distance.upper, decided->upper());
+    }
+    report.met = report.distance.upper <= report.tolerance;
+    // Coordinates far from the origin are rounded when they are written, which no cut mends.
+    if (!report.met && report.termination == RefinementEnd::tolerance_met)
+        report.termination = RefinementEnd::stalled;
+    return {};
+}
+
+} // namespace bot2nurbs

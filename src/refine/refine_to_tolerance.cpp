@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "bot2nurbs/refine_to_tolerance.h"
+
+#include "bot2nurbs/refine_domain.h"
+#include "refine/choose_marks.h"
+#include "refine/trial.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace bot2nurbs {
+
+namespace {
+
+// Rounds without progress before refinement is given up: a place where a crease of the source is
+// rounded may get worse before it gets better. While other rows are left to try, fewer.
+constexpr std::size_t patience = 3, tangent_patience = 2;
+// Progress is a largest distance lower by this share, or as many patches fewer beyond tolerance.
+constexpr double least_progress = 0.1;
+
+double now()
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+RefinementRound describe(const Trial& trial, double seconds)
+{
+    RefinementRound round;
+    round.patches = trial.domain.complex.quad_count();
+    round.unknowns = trial.fit.summary.unknowns;
+    round.rms = trial.fit.summary.rounds.back().rms;
+    round.distance = {std::max(trial.distance(), trial.bound.lower()), trial.bound.upper()};
+    round.beyond = trial.beyond();
+    round.seconds = seconds;
+    return round;
+}
+
+// Whether the last rounds have come nearer to the tolerance than all before them, from `first` on.
+bool stalled(const std::vector<RefinementRound>& rounds, std::size_t first, std::size_t waits)
+{
+    if (rounds.size() - first <= waits)
+        return false;
+    const auto begin = rounds.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto last = rounds.end() - static_cast<std::ptrdiff_t>(waits);
+    const auto falls = [&](auto value) {
+        const auto less = [&](const RefinementRound& a, const RefinementRound& b) {
+            return value(a) < value(b);
+        };
+        return value(*std::min_element(last, rounds.end(), less)) <=
+               (1.0 - least_progress) * value(*std::min_element(begin, last, less));
+    };
+    return !falls([](const RefinementRound& r) { return r.distance.lower; }) &&
+           !falls([](const RefinementRound& r) { return double(r.beyond); });
+}
+
+// Whether the last round is nearer to the tolerance than the best one so far.
+bool better(const std::vector<RefinementRound>& rounds, Index best)
+{
+    const RefinementRound &a = rounds.back(), &b = rounds[best];
+    return rounds.size() == 1 || a.beyond == 0 || a.distance.lower < b.distance.lower;
+}
+
+// Cuts the domain of a trial where it must be. \return why not, if it cannot be.
+Result<std::optional<RefinementEnd>> cut(const ManifoldMesh& source, const Trial& trial,
+                                         Index max_patches, QuadDomain& domain, Context& context)
+{
+    using End = std::optional<RefinementEnd>;
+    const std::vector<char> marks = choose_marks(trial, max_patches);
+    if (marks.empty())
+        return End(RefinementEnd::patch_limit);
+    Result<RefinedDomain> refined = refine_domain(source, trial.domain, marks, context);
+    if (refined) {
+        domain = std::move(refined->domain);
+        return End();
+    }
+    if (refined.error().code == ErrorCode::layout_failed)
+        return End(RefinementEnd::quality_limit);
+    return refined.error();
+}
+
+} // namespace
+
+const char* name(RefinementEnd end)
+{
+    switch (end) {
+    case RefinementEnd::tolerance_met: return "tolerance_met";
+    case RefinementEnd::patch_limit: return "patch_limit";
+    case RefinementEnd::stalled: return "stalled";
+    case RefinementEnd::quality_limit: return "quality_limit";
+    }
+    return "";
+}
+
+std::optional<Error> ToleranceOptions::check() const
+{
+    const auto bad = [](const char* message) {
+        return Error{ErrorCode::bad_option, message, invalid_index};
+    };
+    if (!(tolerance > 0.0) || !std::isfinite(tolerance))
+        return bad("the tolerance must be a positive number");
+    if (max_patches == 0)
+        return bad("at least one patch must be allowed");
+    if (auto error = fit.check())
+        return error;
+    return samples.check();
+}
+
+Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain start,
+                                         const ToleranceOptions& options, Context& context)
+{
+    if (const auto error = options.check())
+        return *error;
+    ToleranceOptions current = options;
+    ToleranceFit result;
+    Trial best;
+    QuadDomain domain = std::move(start);
+    std::size_t first = 0; // Round with the rows of now.
+    for (std::optional<RefinementEnd> end; !end;) {
+        const double begin = now();
+        Result<Trial> made = make_trial(source, std::move(domain), current, context);
+        if (!made)
+            return made.error();
+        Trial& trial = *made;
+        if (Status failed = prove_trial(source, options.tolerance, trial, context))
+            return *failed;
+        result.rounds.push_back(describe(trial, now() - begin));
+        const bool is_best = better(result.rounds, result.best);
+        if (is_best)
+            result.best = static_cast<Index>(result.rounds.size() - 1);
+
+        const bool tangent = current.fit.rows == DistanceRows::tangent;
+        const bool stuck = stalled(result.rounds, first, tangent ? tangent_patience : patience);
+        if (trial.bound.upper() <= options.tolerance) {
+            end = RefinementEnd::tolerance_met;
+        } else if (stuck && tangent) {
+            current.fit.rows = DistanceRows::point;
+            first = result.rounds.size();
+            domain = is_best ? trial.domain : best.domain;
+        } else if (stuck) {
+            end = RefinementEnd::stalled;
+        } else {
+            Result<std::optional<RefinementEnd>> failed =
+                cut(source, trial, options.max_patches, domain, context);
+            if (!failed)
+                return failed.error();
+            end = *failed;
+        }
+        if (is_best)
+            best = std::move(trial);
+        if (end)
+            result.termination = *end;
+    }
+    result.domain = std::move(best.domain);
+    result.fit = std::move(best.fit);
+    result.bound = std::move(best.bound);
+    return result;
+}
+
+} // namespace bot2nurbs

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include "refine/trial.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace bot2nurbs {
+
+namespace {
+
+// Emphasis of the fit, over the tolerance. It halves the largest distances where edges are rounded:
+// bunny and spot need 10 and 29 % fewer patches for 0.3 % of the diagonal than without.
+constexpr double emphasis_share = 0.5;
+
+// Cells bounded for every triangle and Bezier piece before the question is left open: decisions of
+// surfaces that are near take 1 to 12, those of surfaces that are far would take hundreds.
+constexpr std::uint64_t cells_per_element = 20;
+
+// Mean squares of the differences of neighbours in a grid, row by row: along rows, then across.
+std::array<double, 2> mean_changes(const double* grid, Index side)
+{
+    double along = 0.0, across = 0.0;
+    for (Index j = 0; j < side; ++j)
+        for (Index i = 0; i < side; ++i) {
+            const double here = grid[j * side + i];
+            if (i + 1 < side) {
+                const double d = grid[j * side + i + 1] - here;
+                along += d * d;
+            }
+            if (j + 1 < side) {
+                const double d = grid[(j + 1) * side + i] - here;
+                across += d * d;
+            }
+        }
+    const double count = double(side) * (side - 1);
+    return {along / count, across / count};
+}
+
+// What the samples of each patch say. `first`: per quad its first sample, of which side * side are
+// on a grid of the chart.
+void measure_samples(const SurfaceSampleSet& samples, const std::vector<std::size_t>& first,
+                     const SplineSurface& surface, Index side, std::vector<PatchError>& patches)
+{
+    std::vector<double> residual(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const Vec3 miss = surface.position(samples.domain[i]) - samples.positions[i];
+        PatchError& patch = patches[samples.domain[i].quad];
+        patch.distance = std::max(patch.distance, norm(miss));
+        residual[i] = dot(miss, samples.normals[i]);
+    }
+    for (std::size_t q = 0; q < patches.size(); ++q)
+        patches[q].change = mean_changes(residual.data() + first[q], side);
+}
+
+} // namespace
+
+Index Trial::beyond() const
+{
+    return static_cast<Index>(std::count_if(patches.begin(), patches.end(),
+                                            [](const PatchError& p) { return p.beyond; }));
+}
+
+double Trial::distance() const
+{
+    double largest = 0.0;
+    for (const PatchError& p : patches)
+        largest = std::max(largest, p.distance);
+    return largest;
+}
+
+Result<Trial> make_trial(const ManifoldMesh& source, QuadDomain domain,
+                         const ToleranceOptions& options, Context& context)
+{
+    Trial trial;
+    trial.domain = std::move(domain);
+    const QuadComplex& complex = trial.domain.complex;
+    Result<std::vector<QuadChart>> charts = compute_charts(source, trial.domain, context);
+    if (!charts)
+        return charts.error();
+    trial.charts = std::move(*charts);
+    Result<SurfaceSampleSet> samples = make_samples(source, trial.charts, options.samples, context);
+    if (!samples)
+        return samples.error();
+    std::vector<std::size_t> first(complex.quad_count(), samples->size());
+    for (std::size_t i = samples->size(); i-- > 0;)
+        first[samples->domain[i].quad] = i;
+    add_curve_samples(source, complex, trial.charts, options.samples, *samples);
+
+    const Result<SplineNetwork> network = build_spline_network(complex, options.spline);
+    if (!network)
+        return network.error();
+    FitOptions how = options.fit;
+    how.emphasis = emphasis_share * options.tolerance;
+    Result<FitResult> fit = fit_network(*network, *samples, how, context);
+    if (!fit)
+        return fit.error();
+    trial.fit = std::move(*fit);
+
+    trial.patches.resize(complex.quad_count());
+    measure_samples(*samples, first, trial.fit.surface, options.samples.per_side, trial.patches);
+    for (PatchError& patch : trial.patches)
+        patch.exceeds = patch.beyond = patch.distance > options.tolerance;
+    return trial;
+}
+
+Status prove_trial(const ManifoldMesh& source, double tolerance, Trial& trial, Context& context)
+{
+    const QuadComplex& complex = trial.domain.complex;
+    const auto exceeds = [](const PatchError& patch) { return patch.exceeds; };
+    HausdorffOptions decide;
+    decide.decide = tolerance;
+    decide.max_cells = cells_per_element * (std::uint64_t{source.face_count()} +
+                                            std::uint64_t{16} * complex.quad_count());
+    for (;;) {
+        Result<HausdorffBound> bound =
+            bound_hausdorff(source, complex, trial.fit.surface, decide, context);
+        if (!bound)
+            return bound.error();
+        trial.bound = std::move(*bound);
+        for (Index q = 0; q < complex.quad_count(); ++q) {
+            const PatchDistance& known = trial.bound.patches[q];
+            // Feet of samples are found by a local search, and may be farther than the distance.
+            PatchError& patch = trial.patches[q];
+            patch.distance = 0.0;
+            patch.exceeds = patch.beyond = false;
+            for (const DistanceBounds& d : {known.surface_to_source, known.source_to_surface}) {
+                patch.distance = std::max(patch.distance, d.lower);
+                patch.exceeds = patch.exceeds || d.lower > tolerance;
+                patch.beyond = patch.beyond || d.upper > tolerance;
+            }
+        }
+        const bool limited = trial.bound.termination == HausdorffTermination::cell_limit;
+        if (!limited || decide.max_cells == 0 ||
+            std::any_of(trial.patches.begin(), trial.patches.end(), exceeds))
+            return {};
+        decide.max_cells = 0;
+    }
+}
+
+} // namespace bot2nurbs

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+#include "bot2nurbs/refine_to_tolerance.h"
+
+#include "bot2nurbs/validate_domain.h"
+#include "hand_domains.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace bot2nurbs {
+namespace {
+
+using test::HandDomain;
+
+//! A torus of radii 1 and 0.4 in twelve patches; its triangles are within 8e-4 of it.
+HandDomain torus()
+{
+    return test::torus_grid(4, 3, 24);
+}
+
+//! Too little for twelve patches, enough for the triangles.
+constexpr double fine = 1.1e-3;
+
+ToleranceOptions options_for(double tolerance)
+{
+    ToleranceOptions options;
+    options.tolerance = tolerance;
+    return options;
+}
+
+Result<ToleranceFit> refined(const HandDomain& hand, const ToleranceOptions& options,
+                             unsigned threads = 0)
+{
+    Context context;
+    context.threads = threads;
+    return refine_to_tolerance(hand.mesh, hand.domain, options, context);
+}
+
+TEST(RefineToTolerance, a_torus_of_twelve_patches_is_refined_until_the_bound_proves_the_tolerance)
+{
+    const HandDomain hand = torus();
+    const double tolerance = fine;
+    const Result<ToleranceFit> fit = refined(hand, options_for(tolerance));
+    ASSERT_TRUE(fit) << fit.error().message;
+    EXPECT_EQ(fit->termination, RefinementEnd::tolerance_met);
+    ASSERT_GE(fit->rounds.size(), 2u);
+    EXPECT_GT(fit->rounds[0].distance.lower, tolerance);
+    EXPECT_GT(fit->rounds[0].beyond, 0u);
+    EXPECT_EQ(fit->best, fit->rounds.size() - 1);
+    EXPECT_EQ(fit->rounds.back().beyond, 0u);
+    EXPECT_EQ(fit->rounds.back().patches, fit->domain.complex.quad_count());
+    EXPECT_LE(fit->bound.upper(), tolerance);
+
+    Context context;
+    const Result<HausdorffBound> bound =
+        bound_hausdorff(hand.mesh, fit->domain.complex, fit->fit.surface, {}, context);
+    ASSERT_TRUE(bound);
+    EXPECT_LE(bound->lower(), tolerance);
+    const Result<DomainValidation> validation = validate_domain(hand.mesh, fit->domain, context);
+    ASSERT_TRUE(validation);
+    EXPECT_TRUE(validation->valid());
+}
+
+TEST(RefineToTolerance, a_tolerance_that_is_met_at_once_cuts_nothing)
+{
+    const HandDomain hand = torus();
+    const Result<ToleranceFit> fit = refined(hand, options_for(0.5));
+    ASSERT_TRUE(fit);
+    EXPECT_EQ(fit->termination, RefinementEnd::tolerance_met);
+    EXPECT_EQ(fit->rounds.size(), 1u);
+    EXPECT_EQ(fit->domain.complex.quad_count(), 12u);
+}
+
+TEST(RefineToTolerance, a_limit_of_patches_ends_it_with_the_best_round)
+{
+    const HandDomain hand = torus();
+    ToleranceOptions options = options_for(1e-5);
+    options.max_patches = 40;
+    const Result<ToleranceFit> fit = refined(hand, options);
+    ASSERT_TRUE(fit);
+    EXPECT_EQ(fit->termination, RefinementEnd::patch_limit);
+    EXPECT_GT(fit->bound.upper(), options.tolerance);
+    double least = std::numeric_limits<double>::infinity();
+    for (const RefinementRound& round : fit->rounds) {
+        EXPECT_LE(round.patches, options.max_patches);
+        least = std::min(least, round.distance.lower);
+    }
+    EXPECT_EQ(fit->rounds[fit->best].distance.lower, least);
+    EXPECT_EQ(fit->rounds[fit->best].patches, fit->domain.complex.quad_count());
+}
+
+TEST(RefineToTolerance, the_surface_does_not_depend_on_the_number_of_threads)
+{
+    const HandDomain hand = torus();
+    const Result<ToleranceFit> one = refined(hand, options_for(fine), 1);
+    const Result<ToleranceFit> many = refined(hand, options_for(fine), 8);
+    ASSERT_TRUE(one && many);
+    EXPECT_EQ(one->rounds.size(), many->rounds.size());
+    const auto &a = one->fit.surface.bezier(), &b = many->fit.surface.bezier();
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i)
+        ASSERT_TRUE(a[i].x == b[i].x && a[i].y == b[i].y && a[i].z == b[i].z) << i;
+}
+
+TEST(RefineToTolerance, tolerances_that_are_no_positive_numbers_are_refused)
+{
+    const HandDomain hand = torus();
+    for (const double tolerance : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
+                                   std::numeric_limits<double>::infinity()}) {
+        const Result<ToleranceFit> fit = refined(hand, options_for(tolerance));
+        ASSERT_FALSE(fit);
+        EXPECT_EQ(fit.error().code, ErrorCode::bad_option);
+    }
+}
+
+TEST(RefineToTolerance, it_can_be_cancelled)
+{
+    const HandDomain hand = torus();
+    Context context;
+    context.cancel();
+    const Result<ToleranceFit> fit =
+        refine_to_tolerance(hand.mesh, hand.domain, options_for(1e-2), context);
+    ASSERT_FALSE(fit);
+    EXPECT_EQ(fit.error().code, ErrorCode::cancelled);
+}
+
+TEST(LayoutForTolerance, a_smaller_tolerance_starts_from_more_patches_up_to_the_limit)
+{
+    // A sphere with bumps, which take more patches.
+    const HandDomain sphere = test::sphere_cube(0, 24);
+    std::vector<Vec3> positions = sphere.mesh.positions();
+    for (Vec3& p : positions)
+        p *= 1.0 + 0.1 * std::sin(20.0 * p.x) * std::sin(20.0 * p.y) * std::sin(20.0 * p.z);
+    const ManifoldMesh bumpy = *ManifoldMesh::build(std::move(positions), sphere.mesh.triangles());
+    const auto patches = [&](double tolerance, Index limit) {
+        ToleranceOptions options = options_for(tolerance);
+        options.max_patches = limit;
+        Context context;
+        const Result<LayoutResult> layout = layout_for_tolerance(bumpy, {}, options, context);
+        EXPECT_TRUE(layout);
+        return layout ? layout->domain.complex.quad_count() : 0;
+    };
+    const Index few = patches(0.5, 5000), more = patches(1e-2, 5000);
+    EXPECT_LT(few, more);
+    EXPECT_LE(patches(1e-2, few), few);
+}
+
+} // namespace
+} // namespace bot2nurbs
