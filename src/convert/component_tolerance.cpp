@@ -22,6 +22,7 @@ ToleranceOptions tolerance_options(const ConvertOptions& options, double toleran
         result.max_patches = *options.max_patches;
     result.spline = options.spline;
     result.fit = options.fit;
+    result.fit.fairness_floor = std::min(options.fit.fairness_floor, FitOptions().fairness_floor);
     return result;
 }
 
