@@ -48,7 +48,7 @@ def describe(run):
     said = run.repairs + [w for w in run.warnings if w not in run.repairs]
     rms = [c["deviation"]["rms_relative"] for c in run.report["components"]]
     text = ", ".join(said) or "nothing to repair"
-    return f"{text}; {len(rms)} solid(s), rms {100 * max(rms):.2g} %"
+    return f"{text}; {len(rms)} component(s), rms {100 * max(rms):.2g} %"
 
 
 def main():
@@ -87,7 +87,7 @@ def main():
             "# Bad input",
             "",
             "Written by `scripts/bad_input.py`: every broken mesh of the test corpus through the whole",
-            f"command. A verdict is due within {arguments.limit:.0f} s of one processor: a sound result (valid, solid, joins within",
+            f"command. A verdict is due within {arguments.limit:.0f} s of one processor: a sound result (valid, solid where closed, joins within",
             f"{verdict.MAX_ANGLE_DEG:g} degrees, no gap, rms below {100 * verdict.MAX_RMS:g} % of the diagonal) with the repairs stated, or exit code",
             "3, 5 or 6 with a message and no file left behind. Anything else is a failure. At n diagonals from the",
             f"origin the rounding of the coordinates alone turns normals by up to {verdict.FAR_ANGLE_DEG:g} n degrees, which is allowed.",

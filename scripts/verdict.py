@@ -165,10 +165,13 @@ def faults(run, genera=None, output="result.3dm"):
         where = f"component {number}: " if len(report["components"]) > 1 else ""
         if not brep["valid"]:
             found.append(where + "not valid")
-        if not brep["solid"] or brep["boundary_edges"] or brep["nonmanifold_edges"]:
-            found.append(where + "not solid")
+        loops = c["boundary_loops"]
+        if brep["solid"] != (loops == 0) or (brep["boundary_edges"] == 0) != (loops == 0):
+            found.append(where + ("closed" if loops else "not solid"))
+        if brep["nonmanifold_edges"]:
+            found.append(where + "not manifold")
         euler = brep["vertices"] - brep["edges"] + brep["faces"]
-        if euler != 2 - 2 * c["genus"]:
+        if euler != 2 - 2 * c["genus"] - loops:
             found.append(where + f"Euler number {euler} at genus {c['genus']}")
         if genera is not None and c["genus"] != genera[number]:
             found.append(where + f"genus {c['genus']} instead of {genera[number]}")

@@ -60,7 +60,7 @@ template <class Real> FrontalFactor<Real>::FrontalFactor(const FactorPlan& plan,
 template <class Real> auto FrontalFactor<Real>::panel(const FactorPlan::Supernode& node) -> Panel
 {
     const std::size_t square = static_cast<std::size_t>(block_) * block_;
-    return {values_.data() + node.values * square, Size(block_) * node.height(),
+    return {values_.get() + node.values * square, Size(block_) * node.height(),
             Size(block_) * node.width()};
 }
 
@@ -68,7 +68,7 @@ template <class Real> auto FrontalFactor<Real>::panel(const FactorPlan::Supernod
     -> ConstPanel
 {
     const std::size_t square = static_cast<std::size_t>(block_) * block_;
-    return {values_.data() + node.values * square, Size(block_) * node.height(),
+    return {values_.get() + node.values * square, Size(block_) * node.height(),
             Size(block_) * node.width()};
 }
 
@@ -105,7 +105,8 @@ template <class Real> bool FrontalFactor<Real>::factorize(const std::vector<doub
                                                           const Eigen::VectorXd& scale,
                                                           const Context& context)
 {
-    values_.resize(plan_->value_count * static_cast<std::size_t>(block_) * block_);
+    if (!values_)
+        values_.reset(new Real[plan_->value_count * static_cast<std::size_t>(block_) * block_]);
     // What the eliminated columns of a node leave for the others, until its parent takes it.
     std::vector<Matrix> updates(plan_->supernodes.size());
     return up_the_tree(context, [&](int s, bool wide) {

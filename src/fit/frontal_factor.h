@@ -5,6 +5,7 @@
 #include "fit/factor_plan.h"
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 namespace bot2nurbs {
@@ -44,7 +45,9 @@ private:
 
     const FactorPlan* plan_;
     int block_;
-    std::vector<Real> values_;
+    // Not set to zero beforehand: that would take as long as a cancelled call may, and panels are
+    // when they are assembled.
+    std::unique_ptr<Real[]> values_;
 };
 
 extern template class FrontalFactor<float>;
