@@ -9,6 +9,10 @@ namespace bot2nurbs {
 
 namespace {
 
+// Samples of a crease count this much more than those of the surface around: the patches on its two
+// sides pull at it, and a crease off its place is seen where a surface is not.
+constexpr double crease_weight = 4.0;
+
 // Place at parameter t along side s of a quad, from corner s to corner s + 1.
 Vec2 on_side(Index s, double t)
 {
@@ -52,7 +56,8 @@ void add_curve_samples(const ManifoldMesh& source, const QuadComplex& complex,
         any = true;
         const Index h = complex.halfedge_of_edge(e), q = QuadComplex::quad_of(h);
         const ChartLocator locator(charts[q]);
-        const double each = weight[q] / std::max<Index>(count[q], 1);
+        const double share = complex.is_boundary_edge(e) ? 1.0 : crease_weight;
+        const double each = share * weight[q] / std::max<Index>(count[q], 1);
         const auto add = [&](double t) {
             const Vec2 uv = on_side(QuadComplex::side_of(h), t);
             const SourcePoint point = source_point(charts[q], locator.locate(uv));
