@@ -55,6 +55,18 @@ Vec2 clamped_step(const Tangents& s, const Vec2& at, const Vec2& free, const Vec
     return free;
 }
 
+//! A free coordinate is beyond an end only if the foot is at that end. Where tangents are nearly
+//! parallel (a fold) the search may stop inside, and the tangent plane says nothing about what is
+//! next door.
+double beyond(double foot, double free)
+{
+    if (foot > 0.0)
+        free = std::max(free, 0.0);
+    if (foot < 1.0)
+        free = std::min(free, 1.0);
+    return free;
+}
+
 //! The derivatives are Bezier patches themselves: none is longer than their longest coefficient.
 DerivativeBounds derivative_bounds(const BezierView& c)
 {
@@ -127,6 +139,7 @@ PieceFoot foot_on_piece(const BezierView& piece, const Vec3& p, const Vec2& star
         }
         at = next;
     }
+    best.beyond = {beyond(best.at.x, best.beyond.x), beyond(best.at.y, best.beyond.y)};
     return best;
 }
 

@@ -18,7 +18,9 @@ constexpr int most_cells = 20000;
 struct BezierCell {
     std::array<Vec3, 16> control;
     int halvings = 0;
+    Vec2 corner; //!< The lowest, in the parameters of the piece.
 
+    Vec2 in_piece(const Vec2& at) const { return corner + std::ldexp(1.0, -halvings) * at; }
     BezierView view() const { return {control.data(), 4}; }
 };
 
@@ -37,9 +39,12 @@ void halve(const Vec3* c, std::size_t s, Vec3* low, Vec3* high)
 
 std::array<BezierCell, 4> quarter(const BezierCell& cell)
 {
+    static constexpr std::array<Vec2, 4> corner{Vec2{0, 0}, {0, 0.5}, {0.5, 0}, {0.5, 0.5}};
     std::array<BezierCell, 4> out;
-    for (BezierCell& o : out)
-        o.halvings = cell.halvings + 1;
+    for (std::size_t k = 0; k < 4; ++k) {
+        out[k].halvings = cell.halvings + 1;
+        out[k].corner = cell.in_piece(corner[k]);
+    }
     BezierCell low, high;
     for (std::size_t j = 0; j < 4; ++j)
         halve(&cell.control[j], 4, &low.control[j], &high.control[j]);
@@ -116,6 +121,7 @@ SurfaceDistance DistanceFloor::to_surface(const Vec3& p, double found, double sh
             if (distance < out.distance) {
                 out.distance = distance;
                 out.piece = piece;
+                out.at = cell.in_piece(foot.at);
                 goal = (1.0 - share) * distance;
             }
             const double bound = plane_bound(p, foot.position, cell.control);

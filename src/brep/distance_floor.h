@@ -14,6 +14,7 @@ namespace bot2nurbs {
 struct SurfaceDistance {
     double floor = 0.0;          //!< At most the distance.
     Index piece = invalid_index; //!< One with a place that is nearer than what was found before,
+    Vec2 at;                     //!< where that is,
     double distance = 0.0;       //!< and how near it is.
 };
 

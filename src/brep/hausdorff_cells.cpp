@@ -17,6 +17,18 @@ constexpr double rounding_slack = 0x1p-38;
 constexpr Index seed_cells = 2;
 //! How much nearer another place on the surface must be to count as missed.
 constexpr double doubtful_share = 0.01;
+
+double mean_width(const PlacedMesh& mesh, Index pieces)
+{
+    double area = 0.0;
+    for (Index f = 0; f < mesh.topology.face_count(); ++f)
+        area += 0.5 * norm(cross(mesh.corner(f, 1) - mesh.corner(f, 0),
+                                 mesh.corner(f, 2) - mesh.corner(f, 0)));
+    return std::sqrt(area / pieces);
+}
+
+//! A triangle is thin when its longest side is so many times its height over it.
+constexpr double thin_ratio = 4.0;
 //! The closest element is not farther than one near by, but for rounding.
 constexpr double limit_slack = 1.0 + 1e-9;
 
@@ -54,46 +66,59 @@ SplineSurface placed(SplineSurface surface, const Vec3& centre, double scale)
 
 } // namespace
 
-std::array<HausdorffCell, 4> HausdorffCell::split() const
+HausdorffCell HausdorffCell::whole(HausdorffSide side, Index element)
 {
-    struct Child {
-        Index i, j;
-        bool turned;
-    };
-    using Children = std::array<Child, 4>;
-    static constexpr Children square{{{0, 0, false}, {1, 0, false}, {0, 1, false}, {1, 1, false}}};
-    // Three triangles at the corners, as their parent; the one between them is turned.
-    static constexpr Children upright{{{0, 0, false}, {1, 0, false}, {0, 1, false}, {0, 0, true}}};
-    static constexpr Children inverse{{{1, 0, false}, {1, 1, false}, {0, 1, false}, {1, 1, true}}};
-    const Children& children = side == HausdorffSide::surface ? square
-                               : flipped                      ? inverse
-                                                              : upright;
-    std::array<HausdorffCell, 4> out;
-    for (std::size_t k = 0; k < 4; ++k) {
-        out[k].side = side;
-        out[k].flipped = flipped != children[k].turned;
-        out[k].level = static_cast<std::uint8_t>(level + 1);
-        out[k].element = element;
-        out[k].i = 2 * i + children[k].i;
-        out[k].j = 2 * j + children[k].j;
-        out[k].near = near;
-        out[k].near_at = near_at;
+    HausdorffCell cell;
+    cell.side = side;
+    cell.element = element;
+    if (side == HausdorffSide::surface)
+        cell.corner = {Vec2{0, 0}, Vec2{1, 1}, Vec2{}};
+    else
+        cell.corner = {Vec2{0, 0}, Vec2{1, 0}, Vec2{0, 1}};
+    return cell;
+}
+
+std::array<HausdorffCell, 4> HausdorffCell::quarters() const
+{
+    std::array<HausdorffCell, 4> parts{*this, *this, *this, *this};
+    const auto& [a, b, c] = corner;
+    const Vec2 ab = 0.5 * (a + b);
+    if (side == HausdorffSide::surface) {
+        parts[0].corner = {a, ab, {}};
+        parts[1].corner = {Vec2{ab.x, a.y}, Vec2{b.x, ab.y}, Vec2{}};
+        parts[2].corner = {Vec2{a.x, ab.y}, Vec2{ab.x, b.y}, Vec2{}};
+        parts[3].corner = {ab, b, {}};
+    } else {
+        const Vec2 bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+        parts[0].corner = {a, ab, ca};
+        parts[1].corner = {ab, b, bc};
+        parts[2].corner = {ca, bc, c};
+        parts[3].corner = {ab, bc, ca};
     }
-    return out;
+    for (HausdorffCell& part : parts)
+        part.level = static_cast<std::uint8_t>(level + 2);
+    return parts;
+}
+
+std::array<HausdorffCell, 2> HausdorffCell::halves(std::size_t k) const
+{
+    std::array<HausdorffCell, 2> parts{*this, *this};
+    const Vec2 middle = 0.5 * (corner[k] + corner[(k + 1) % 3]);
+    parts[0].corner[(k + 1) % 3] = middle;
+    parts[1].corner[k] = middle;
+    for (HausdorffCell& part : parts)
+        part.level = static_cast<std::uint8_t>(level + 1);
+    return parts;
 }
 
 int HausdorffCell::corners(std::array<Vec2, 4>& at) const
 {
-    const double size = std::ldexp(1.0, -level);
-    const auto corner = [&](Index di, Index dj) { return Vec2{size * (i + di), size * (j + dj)}; };
+    const auto& [a, b, c] = corner;
     if (side == HausdorffSide::surface) {
-        at = {corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
+        at = {a, Vec2{b.x, a.y}, b, Vec2{a.x, b.y}};
         return 4;
     }
-    if (flipped)
-        at = {corner(1, 0), corner(1, 1), corner(0, 1), {}};
-    else
-        at = {corner(0, 0), corner(1, 0), corner(0, 1), {}};
+    at = {a, b, c, {}};
     return 3;
 }
 
@@ -114,7 +139,8 @@ HausdorffSubject::HausdorffSubject(const ManifoldMesh& source, const QuadComplex
       mesh_(source, placed(source.positions(), centre_, scale_)),
       surface_(placed(surface, centre_, scale_)), pieces_(complex, surface_, context),
       tree_(mesh_.positions, source.triangles(), &context),
-      locator_(complex, surface_, seed_cells, &context), floor_(mesh_, tree_, pieces_, &context)
+      locator_(complex, surface_, seed_cells, &context), floor_(mesh_, tree_, pieces_, &context),
+      piece_width_(mean_width(mesh_, pieces_.count()))
 {
 }
 
@@ -141,7 +167,7 @@ FoundPlace HausdorffSubject::find(HausdorffSide side, Index element, const Vec2&
             if (sure.piece != invalid_index) {
                 place.distance = sure.distance;
                 place.near = sure.piece;
-                place.near_at = {0.5, 0.5};
+                place.near_at = sure.at;
             }
         }
         place.patch = BezierPieces::patch(place.near);
@@ -161,6 +187,28 @@ FoundPlace HausdorffSubject::find(HausdorffSide side, Index element, const Vec2&
         place.distance = hit.distance;
     }
     return place;
+}
+
+void HausdorffSubject::split(const HausdorffCell& cell, std::vector<HausdorffCell>& parts) const
+{
+    if (cell.side == HausdorffSide::source) {
+        std::array<Vec3, 3> edge;
+        std::array<double, 3> length;
+        for (std::size_t k = 0; k < 3; ++k) {
+            edge[k] = mesh_.at(cell.element, cell.corner[(k + 1) % 3]) -
+                      mesh_.at(cell.element, cell.corner[k]);
+            length[k] = norm(edge[k]);
+        }
+        const auto longest = std::max_element(length.begin(), length.end());
+        if (*longest > piece_width_ &&
+            *longest * *longest > thin_ratio * norm(cross(edge[0], edge[1]))) {
+            const auto halves = cell.halves(static_cast<std::size_t>(longest - length.begin()));
+            parts.insert(parts.end(), halves.begin(), halves.end());
+            return;
+        }
+    }
+    const auto quarters = cell.quarters();
+    parts.insert(parts.end(), quarters.begin(), quarters.end());
 }
 
 Cover HausdorffSubject::cover_cell(const HausdorffCell& cell, double target) const

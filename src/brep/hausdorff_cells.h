@@ -19,23 +19,25 @@ enum class HausdorffSide : std::uint8_t {
     source,  //!< Elements are faces, a point is corner 0 + x (corner 1 - 0) + y (corner 2 - 0).
 };
 
-//! A part of an element, `level` times split in four. Squares are [i, i + 1] x [j, j + 1] in units
-//! of 2^-level; triangles have the corners (i, j), (i + 1, j), (i, j + 1), or when flipped (i + 1,
-//! j), (i + 1, j + 1), (i, j + 1).
+//! A part of an element. Parameters are sums of powers of two not below 2^-level, so exact.
 struct HausdorffCell {
     HausdorffSide side = HausdorffSide::surface;
-    bool flipped = false;
-    std::uint8_t level = 0;
+    std::uint8_t level = 0; //!< How often it was halved; in four is twice.
     Index element = invalid_index;
-    Index i = 0, j = 0;
+    //! Of a triangle, counter-clockwise; of a square the lowest and the highest corner.
+    std::array<Vec2, 3> corner;
     Index near = invalid_index; //!< An element of the other surface near the cell,
     Vec2 near_at;               //!< and where on it, if it is a piece.
     PatchBounds bounds;         //!< Of the distance of its points from the other surface.
 
     //! Smaller cells would be rounding.
-    static constexpr int most_levels = 24;
+    static constexpr int most_levels = 48;
 
-    std::array<HausdorffCell, 4> split() const;
+    static HausdorffCell whole(HausdorffSide side, Index element);
+    //! Four parts of the same shape.
+    std::array<HausdorffCell, 4> quarters() const;
+    //! A triangle as two, cut from the middle of the side after corner k to the corner opposite.
+    std::array<HausdorffCell, 2> halves(std::size_t k) const;
     //! The corners in parameters, counter-clockwise. \return how many there are.
     int corners(std::array<Vec2, 4>& at) const;
 };
@@ -77,6 +79,10 @@ public:
     //! `doubtful`, a slower one makes sure.
     FoundPlace find(HausdorffSide side, Index element, const Vec2& at, Index near,
                     double doubtful) const;
+    //! Adds the parts that take the place of a cell: quarters, but halves of a thin triangle that
+    //! is longer than Bezier pieces are wide. Its quarters would be as thin, and it would take
+    //! hundreds until each has few pieces to be compared with.
+    void split(const HausdorffCell& cell, std::vector<HausdorffCell>& parts) const;
     //! Bounds a cell. `target`: bounds up to it need not be better. `lower`: of the Hausdorff
     //! distance; only places that may be beyond it are searched for. `known`: a place in the cell,
     //! if one was found before.
@@ -87,8 +93,10 @@ public:
     //! In the coordinates and units of the input.
     FarPlace far_place(const FoundPlace& place, double distance) const;
 
-private:
+    //! A place, in that scale.
     Vec3 point(HausdorffSide side, Index element, const Vec2& at) const;
+
+private:
     Cover cover_cell(const HausdorffCell& cell, double target) const;
     double radius(const HausdorffCell& cell, const Vec2& at) const;
 
@@ -100,6 +108,7 @@ private:
     ClosestPoint tree_;
     SurfaceLocator locator_;
     DistanceFloor floor_;
+    double piece_width_; //!< Of a Bezier piece, on average.
 };
 
 //! The middle of a cell.

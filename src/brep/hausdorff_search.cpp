@@ -35,7 +35,8 @@ constexpr std::array<HausdorffSide, 2> both_sides{HausdorffSide::surface, Hausdo
 
 auto cell_key(const HausdorffCell& c)
 {
-    return std::make_tuple(c.side, c.element, c.level, c.i, c.j, c.flipped);
+    const auto& [a, b, end] = c.corner;
+    return std::make_tuple(c.side, c.element, c.level, a.x, a.y, b.x, b.y, end.x, end.y);
 }
 
 } // namespace
@@ -232,17 +233,17 @@ bool HausdorffSearch::bound_elements()
     std::vector<FoundPlace> known;
     for (std::size_t begin = 0; begin < all; begin += block_cells) {
         const std::size_t end = std::min(all, begin + block_cells);
-        cells.assign(end - begin, {});
+        cells.resize(end - begin);
         known.resize(end - begin);
         for (std::size_t i = begin; i < end; ++i) {
+            const bool piece = i < pieces;
             HausdorffCell& cell = cells[i - begin];
             FoundPlace& place = known[i - begin];
-            if (i < pieces) {
-                cell.element = static_cast<Index>(i);
+            cell = HausdorffCell::whole(piece ? HausdorffSide::surface : HausdorffSide::source,
+                                        static_cast<Index>(piece ? i : i - pieces));
+            if (piece) {
                 place = piece_places_[i];
             } else {
-                cell.side = HausdorffSide::source;
-                cell.element = static_cast<Index>(i - pieces);
                 place = vertex_places_[source_.triangle(cell.element)[0]];
                 place.element = cell.element;
                 place.at = {0.0, 0.0};
@@ -269,13 +270,12 @@ bool HausdorffSearch::refine()
             open_.pop();
             if (closed(cell)) {
                 close(cell);
-            } else if (cell.level == HausdorffCell::most_levels || cells_ >= max_cells_ ||
+            } else if (cell.level >= HausdorffCell::most_levels || cells_ >= max_cells_ ||
                        open_.size() > most_open) {
                 close(cell);
                 termination_ = HausdorffTermination::cell_limit;
             } else {
-                const auto split = cell.split();
-                parts.insert(parts.end(), split.begin(), split.end());
+                subject_.split(cell, parts);
             }
         }
         if (!look_at(parts, {}))

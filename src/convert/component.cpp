@@ -16,17 +16,6 @@ namespace bot2nurbs {
 
 namespace {
 
-//! Proving the distance must not cost more than the fit: models need 1 to 14 cells for each
-//! triangle and Bezier piece. A proof that would take more ends with a looser bound.
-HausdorffOptions affordable(const ManifoldMesh& source, const QuadComplex& complex)
-{
-    constexpr std::uint64_t cells_per_element = 15, least_cells = 100000, pieces_per_patch = 16;
-    HausdorffOptions options;
-    options.max_cells = least_cells + cells_per_element * (source.face_count() +
-                                                           pieces_per_patch * complex.quad_count());
-    return options;
-}
-
 //! Moves and scales between the coordinates of the input and the unit box.
 struct Frame {
     Vec3 centre;
@@ -422,8 +411,7 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
             return *failed;
     } else {
         const Result<HausdorffBound> bound =
-            bound_hausdorff(component.mesh, result.domain.complex, result.surface,
-                            affordable(component.mesh, result.domain.complex), context);
+            bound_hausdorff(component.mesh, result.domain.complex, result.surface, {}, context);
         if (!bound)
             return bound.error();
         outcome.bound = *bound;

@@ -148,5 +148,27 @@ TEST(FootOnPiece, stays_in_the_square_and_says_how_far_beyond_it_the_point_is)
     EXPECT_EQ(corner.at, (Vec2{0.0, 1.0}));
 }
 
+TEST(FootOnPiece, is_beyond_no_side_it_is_not_on)
+{
+    // The tangents are nearly parallel: along u alone or v alone the way to a point is long.
+    std::vector<Vec3> control;
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j)
+            control.push_back({(i + j) / 3.0, 0.01 * i / 3.0, 0.0});
+    const BezierView skew{control.data(), 4};
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> number(-1.0, 3.0);
+    int inside = 0;
+    for (int n = 0; n < 200; ++n) {
+        const PieceFoot foot = foot_on_piece(skew, {number(random), 0.01 * number(random), 0.2});
+        EXPECT_TRUE(foot.at.x == 0.0 || foot.beyond.x >= 0.0);
+        EXPECT_TRUE(foot.at.x == 1.0 || foot.beyond.x <= 1.0);
+        EXPECT_TRUE(foot.at.y == 0.0 || foot.beyond.y >= 0.0);
+        EXPECT_TRUE(foot.at.y == 1.0 || foot.beyond.y <= 1.0);
+        inside += foot.at.y > 0.0 && foot.at.y < 1.0;
+    }
+    EXPECT_GE(inside, 20);
+}
+
 } // namespace
 } // namespace bot2nurbs

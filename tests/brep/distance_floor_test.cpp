@@ -66,6 +66,27 @@ TEST(DistanceFloor, notices_a_nearer_place_than_the_one_that_was_found)
     }
 }
 
+TEST(DistanceFloor, says_where_on_the_piece_the_nearer_place_is)
+{
+    // Folded pieces: a search from the middle of the piece may end on another sheet.
+    std::mt19937 random(3);
+    const Domain d = fixtures::disk_grid(1, 1);
+    SplineSurface surface = fixtures::flat_patches(d);
+    std::uniform_real_distribution<double> shift(-0.5, 0.5);
+    for (Vec3& c : surface.bezier())
+        c += Vec3{shift(random), shift(random), shift(random)};
+    const Scene scene(d, surface, fixtures::icosphere(1));
+    int other_sheet = 0;
+    for (const Vec3& p : some_points(100, 1.0)) {
+        const SurfaceDistance found = scene.floor.to_surface(p, 10.0, 1e-3);
+        ASSERT_NE(found.piece, invalid_index);
+        const BezierView piece = scene.pieces.view(found.piece);
+        EXPECT_NEAR(norm(p - piece.position(found.at)), found.distance, 1e-12);
+        other_sheet += norm(p - foot_on_piece(piece, p).position) > 1.02 * found.distance;
+    }
+    EXPECT_GE(other_sheet, 5);
+}
+
 TEST(DistanceFloor, of_the_centre_of_a_sphere_is_its_radius_although_all_of_it_is_as_near)
 {
     const Domain d = fixtures::sphere_cube(1);

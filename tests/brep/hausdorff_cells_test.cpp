@@ -22,13 +22,11 @@ bool contains(const std::array<Vec2, 4>& corners, int n, const Vec2& p)
 TEST(HausdorffCell, parts_tile_their_parent)
 {
     for (const HausdorffSide side : {HausdorffSide::surface, HausdorffSide::source}) {
-        HausdorffCell whole;
-        whole.side = side;
-        std::vector<HausdorffCell> cells{whole};
+        std::vector<HausdorffCell> cells{HausdorffCell::whole(side, 0)};
         for (int level = 0; level < 3; ++level) {
             std::vector<HausdorffCell> parts;
             for (const HausdorffCell& cell : cells)
-                for (const HausdorffCell& part : cell.split())
+                for (const HausdorffCell& part : cell.quarters())
                     parts.push_back(part);
             cells = parts;
         }
@@ -58,6 +56,55 @@ TEST(HausdorffCell, parts_tile_their_parent)
     }
 }
 
+TEST(HausdorffCell, halves_tile_their_parent_whichever_side_is_cut)
+{
+    const HausdorffCell whole = HausdorffCell::whole(HausdorffSide::source, 0);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto halves = whole.halves(k);
+        for (const HausdorffCell& half : halves) {
+            const auto& [a, b, c] = half.corner;
+            EXPECT_EQ(cross(b - a, c - a), 0.5) << k; // Half of the parent's, and not turned over.
+        }
+        EXPECT_EQ(halves[0].corner[(k + 1) % 3].x, halves[1].corner[k].x);
+        EXPECT_EQ(halves[0].corner[(k + 1) % 3].y, halves[1].corner[k].y);
+    }
+}
+
+TEST(HausdorffSubject, cuts_needles_and_caps_across_until_they_are_as_short_as_pieces)
+{
+    const Domain disk = fixtures::disk_grid(1, 1);
+    const SplineSurface surface = fixtures::flat_patches(disk);
+    for (const double tip : {0.0, 32.0, 64.0}) {
+        const ManifoldMesh mesh =
+            fixtures::must_build({{0, 0, 0}, {64, 0, 0}, {tip, 1, 0}}, {{0, 1, 2}});
+        const HausdorffSubject subject(mesh, disk.complex, surface, {});
+        std::vector<HausdorffCell> open{HausdorffCell::whole(HausdorffSide::source, 0)}, parts;
+        int whole = 0;
+        double width = 0.0;
+        while (!open.empty()) {
+            const HausdorffCell cell = open.back();
+            open.pop_back();
+            parts.clear();
+            subject.split(cell, parts);
+            if (parts.size() == 2) {
+                open.insert(open.end(), parts.begin(), parts.end());
+                continue;
+            }
+            ++whole;
+            std::array<Vec2, 4> corner;
+            cell.corners(corner);
+            for (int k = 0; k < 3; ++k)
+                width = std::max(
+                    width, norm(subject.point(HausdorffSide::source, 0, corner[k]) -
+                                subject.point(HausdorffSide::source, 0, corner[(k + 1) % 3])));
+        }
+        // Pieces are 1.4 wide. By quarters it would take 4,096 parts until they are as short.
+        EXPECT_GE(whole, 16) << tip;
+        EXPECT_LE(whole, 1024) << tip;
+        EXPECT_LE(subject.from_unit(width), 4.0) << tip;
+    }
+}
+
 TEST(HausdorffSubject, bounds_every_distance_of_a_cell_whatever_the_target)
 {
     const Domain d = fixtures::sphere_cube(0);
@@ -70,10 +117,9 @@ TEST(HausdorffSubject, bounds_every_distance_of_a_cell_whatever_the_target)
     // A target that nothing meets asks for all there is; one that everything meets takes the first.
     for (const double target : {0.0, 0.05, 10.0}) {
         for (Index piece = 0; piece < pieces.count(); piece += 5) {
-            HausdorffCell cell;
-            cell.element = piece;
+            HausdorffCell cell = HausdorffCell::whole(HausdorffSide::surface, piece);
             if (piece % 2 == 1)
-                cell = cell.split()[piece % 4];
+                cell = cell.quarters()[piece % 4];
             const CellFindings found = subject.look_at(cell, nullptr, target, 0.0);
             std::array<Vec2, 4> corners;
             cell.corners(corners);
@@ -87,9 +133,7 @@ TEST(HausdorffSubject, bounds_every_distance_of_a_cell_whatever_the_target)
             EXPECT_GE(subject.from_unit(found.cell.bounds.max()), farthest) << piece;
         }
         for (Index face = 0; face < mesh.face_count(); face += 7) {
-            HausdorffCell cell;
-            cell.side = HausdorffSide::source;
-            cell.element = face;
+            const HausdorffCell cell = HausdorffCell::whole(HausdorffSide::source, face);
             const FoundPlace corner =
                 subject.find(HausdorffSide::source, face, {0.0, 0.0}, invalid_index, 0.0);
             const CellFindings found = subject.look_at(cell, &corner, target, 0.0);
