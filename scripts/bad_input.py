@@ -90,7 +90,7 @@ def main():
             f"command. A verdict is due within {arguments.limit:.0f} s of one processor: a sound result (valid, solid where closed, joins within",
             f"{verdict.MAX_ANGLE_DEG:g} degrees, no gap, rms below {100 * verdict.MAX_RMS:g} % of the diagonal) with the repairs stated, or exit code",
             "3, 5 or 6 with a message and no file left behind. Anything else is a failure. At n diagonals from the",
-            f"origin the rounding of the coordinates alone turns normals by up to {verdict.FAR_ANGLE_DEG:g} n degrees, which is allowed.",
+            f"origin the rounding of the coordinates alone turns normals by up to {verdict.FAR_ANGLE_DEG:g} n degrees (more where a body is thin), which is allowed.",
             "",
         ]
         order = ["sound", *verdict.REFUSALS.values(), "failure"]

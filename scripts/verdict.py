@@ -17,8 +17,9 @@ ROOT = Path(__file__).resolve().parent.parent
 
 MAX_ANGLE_DEG = 1e-8  # Between normals at a join: rounding of doubles gives about 1e-11.
 # A coordinate at n diagonals from the origin is rounded to 1.1e-16 n diagonals, which turns a leg of
-# a control net of 1/1600 of the diagonal by 1e-11 n degrees.
+# a control net of 1/1600 of the diagonal by 1e-11 n degrees. Bodies thinner than that have shorter legs.
 FAR_ANGLE_DEG = 1e-11
+LEG = 1 / 1600
 # A fit with as many patches as the default gives is far closer; what is worse has gone astray.
 MAX_RMS = 0.02  # Of the diagonal.
 MEMORY_LIMIT = 6 << 30  # Bytes of address space: a runaway allocation must not stop the machine.
@@ -129,8 +130,12 @@ def check(binary, mesh, seconds):
 def allowed_angle(component):
     """Largest angle in degrees between normals at joins that rounding of the result explains."""
     side = component["deviation"]["source_to_surface"]
-    place = max(abs(x) for x in side["worst"]) / component["deviation"]["diagonal"]
-    return max(MAX_ANGLE_DEG, FAR_ANGLE_DEG * place)
+    diagonal = component["deviation"]["diagonal"]
+    place = max(abs(x) for x in side["worst"]) / diagonal
+    # No body is thinner everywhere than its volume over the area of its box's largest section.
+    thickness = abs(component["brep"]["volume"]) / diagonal**3 if component["brep"]["solid"] else LEG
+    shorter = max(1.0, LEG / thickness) if thickness > 0 else 1.0
+    return max(MAX_ANGLE_DEG, FAR_ANGLE_DEG * place * shorter)
 
 
 def faults(run, genera=None, output="result.3dm"):

@@ -10,7 +10,8 @@ namespace bot2nurbs {
 //! each with triangles of the least total area between its vertices \cite barequet_sharir_1995, or,
 //! where there is no such triangulation (its diagonals are edges of the mesh already) or the loop
 //! has more than 500 edges, with a fan around the mean of its vertices. Larger loops stay. New
-//! faces and vertices have no source. A component that is closed by this is turned outward.
+//! faces and vertices have no source. What is closed by this is turned outward, and judged for
+//! cavities and for volume, as in repair_mesh().
 //!
 //! Adds a note hole_filled for each hole, naming it by the first vertex of its loop in the
 //! numbering of the soup, and a note hole_left with the number of the others. Errors: bad_option (a

@@ -120,8 +120,7 @@ std::vector<Index> sites_to_keep_apart(const LayoutLevel& level, const Tiles& ti
     for (const auto& [a, b] : level.apart)
         level.for_each_copy(a, [&](Index va) {
             level.for_each_copy(b, [&](Index vb) {
-                bool touching = false;
-                const Index v = tiles.between(va, vb, touching);
+                const Index v = tiles.between(va, vb);
                 if (v != invalid_index)
                     result.push_back(v);
             });

@@ -170,17 +170,14 @@ void Tiles::fix(const std::vector<Index>& vertices)
         fixed_[v] = 1;
 }
 
-Index Tiles::between(Index site_a, Index site_b, bool& touching) const
+Index Tiles::between(Index site_a, Index site_b) const
 {
     const Index a = label_[site_a], b = label_[site_b];
     Index best = invalid_index;
-    touching = false;
     for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
         const Index v = mesh_.from(h), w = mesh_.to(h);
-        if ((label_[v] == a && label_[w] == b) || (label_[v] == b && label_[w] == a)) {
-            touching = true;
+        if ((label_[v] == a && label_[w] == b) || (label_[v] == b && label_[w] == a))
             best = farther(farther(best, v), w);
-        }
     }
     return best != invalid_index && sites_[label_[best]] == best ? invalid_index : best;
 }

@@ -25,8 +25,8 @@ public:
     //! Sites at these vertices stay where they are when others are relaxed.
     void fix(const std::vector<Index>& vertices);
     //! The vertex farthest from its site at the cut between the tiles of two sites, itself no site;
-    //! invalid_index when they have no cut or no such vertex. `touching` tells which.
-    Index between(Index site_a, Index site_b, bool& touching) const;
+    //! invalid_index when they have no cut or no such vertex.
+    Index between(Index site_a, Index site_b) const;
 
     const ManifoldMesh& mesh() const { return mesh_; }
     const std::vector<Index>& sites() const { return sites_; }  //!< Per tile: its mesh vertex.

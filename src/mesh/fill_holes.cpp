@@ -2,6 +2,7 @@
 #include "bot2nurbs/fill_holes.h"
 
 #include "mesh/boundary_loops.h"
+#include "mesh/turn_outward.h"
 
 #include <algorithm>
 #include <array>
@@ -129,12 +130,6 @@ void add_fan(const std::vector<Index>& loop, std::vector<Vec3>& positions, Trian
         triangles.push_back({loop[(i + 1) % loop.size()], loop[i], middle});
 }
 
-void turn_outward(Triangles& triangles)
-{
-    for (auto& t : triangles)
-        std::swap(t[1], t[2]);
-}
-
 // Number of loops left open.
 Result<Index> fill(MeshComponent& component, double size, std::vector<RepairNote>& notes,
                    const Context& context)
@@ -163,15 +158,9 @@ Result<Index> fill(MeshComponent& component, double size, std::vector<RepairNote
     }
     if (triangles.size() == mesh.face_count())
         return left;
-    Result<ManifoldMesh> filled = ManifoldMesh::build(positions, triangles);
+    Result<ManifoldMesh> filled = ManifoldMesh::build(std::move(positions), std::move(triangles));
     if (!filled)
         return filled.error();
-    if (left == 0 && filled->volume() < 0.0) {
-        turn_outward(triangles);
-        filled = ManifoldMesh::build(std::move(positions), std::move(triangles));
-        if (!filled)
-            return filled.error();
-    }
     component.mesh = std::move(*filled);
     component.source_vertex.resize(component.mesh.vertex_count(), invalid_index);
     component.source_face.resize(component.mesh.face_count(), invalid_index);
@@ -189,12 +178,17 @@ Status fill_holes(RepairedMesh& mesh, double size, const Context& context)
                      "the size of holes to fill must not be negative: " + number(size),
                      invalid_index};
     Index left = 0;
+    bool closed = false;
     for (MeshComponent& component : mesh.components) {
+        const bool was_open = component.boundary_loops > 0;
         const Result<Index> open = fill(component, size, mesh.notes, context);
         if (!open)
             return open.error();
         left += *open;
+        closed = closed || (was_open && *open == 0);
     }
+    if (closed)
+        turn_outward(mesh, tolerance::weld * mesh.box.diagonal());
     if (left > 0)
         mesh.notes.push_back({"hole_left",
                               std::to_string(left) + " boundary loops are larger than " +

@@ -2,9 +2,9 @@
 #include "bot2nurbs/repair_mesh.h"
 
 #include "mesh/degenerate_faces.h"
-#include "mesh/nesting.h"
 #include "mesh/soup_topology.h"
 #include "mesh/split_nonmanifold.h"
+#include "mesh/turn_outward.h"
 #include "mesh/weld.h"
 
 #include <algorithm>
@@ -295,7 +295,7 @@ private:
         orient(topology);
         if (Status bad = build_components(topology))
             return *bad;
-        turn_outward();
+        turn_outward(out_, distance_);
         return std::move(out_);
     }
 
@@ -385,45 +385,6 @@ private:
                 component.volume = component.mesh.volume();
         }
         return std::nullopt;
-    }
-
-    void turn_outward()
-    {
-        std::vector<const ManifoldMesh*> meshes;
-        for (const MeshComponent& c : out_.components)
-            meshes.push_back(&c.mesh);
-        const Nesting nesting = find_nesting(meshes);
-        Index turned = 0, nested = 0, empty = 0;
-        for (std::size_t i = 0; i < out_.components.size(); ++i) {
-            MeshComponent& c = out_.components[i];
-            c.surrounded_by = nesting.parent[i];
-            const bool hollow = nesting.depth[i] % 2 == 1;
-            c.cavity = hollow && c.volume < 0.0;
-            nested += hollow && c.volume > 0.0;
-            double area = 0.0;
-            for (Index f = 0; f < c.mesh.face_count(); ++f)
-                area += 0.5 * norm(c.mesh.area_vector(f));
-            empty += c.mesh.closed() && std::abs(c.volume) <= distance_ * area;
-            if (c.cavity || !(c.volume < 0.0))
-                continue;
-            std::vector<std::array<Index, 3>> triangles = c.mesh.triangles();
-            for (auto& t : triangles)
-                std::swap(t[1], t[2]);
-            // Turning all faces of a manifold mesh keeps it manifold.
-            c.mesh = std::move(ManifoldMesh::build(c.mesh.positions(), triangles).value());
-            c.volume = c.mesh.volume();
-            ++turned;
-        }
-        note("turned_outward", turned,
-             "turned " + count_of(turned, "closed component", "closed components") + " outward");
-        note("no_volume", empty,
-             count_of(empty, "closed component encloses", "closed components enclose") +
-                 " no volume",
-             true);
-        note("nested_solid", nested,
-             count_of(nested, "component lies", "components lie") +
-                 " inside another and turns outward: taken as a solid of its own, not as a hollow",
-             true);
     }
 
     TriangleSoup soup_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bot2nurbs/fill_holes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -115,6 +116,43 @@ TEST(FillHoles, of_a_size_that_is_no_length_is_refused)
         const Status failed = fill_holes(mesh, size, Context());
         ASSERT_TRUE(failed);
         EXPECT_EQ(failed->code, ErrorCode::bad_option);
+    }
+}
+
+TEST(FillHoles, of_a_flat_surface_says_that_nothing_is_enclosed)
+{
+    TriangleSoup soup;
+    soup.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    soup.triangles = {{0, 1, 2}, {0, 2, 3}};
+    soup.source_face = {0, 1};
+    RepairedMesh mesh = repaired(soup);
+    ASSERT_FALSE(fill_holes(mesh, 2.0, Context()));
+    EXPECT_EQ(mesh.components[0].boundary_loops, 0u);
+    EXPECT_TRUE(std::any_of(mesh.notes.begin(), mesh.notes.end(), [](const RepairNote& n) {
+        return n.code == "no_volume" && n.count == 1 && n.warning;
+    }));
+}
+
+TEST(FillHoles, makes_a_cavity_of_an_open_shell_inside_another_that_turns_inward)
+{
+    for (const bool inward : {true, false}) {
+        TriangleSoup soup = cup(8, false);
+        const Index first = static_cast<Index>(soup.positions.size());
+        const TriangleSoup inner = cup(8, false);
+        for (const Vec3& p : inner.positions)
+            soup.positions.push_back(0.5 * p + Vec3{0, 0, 0.5});
+        for (std::array<Index, 3> t : inner.triangles) {
+            if (inward)
+                std::swap(t[1], t[2]);
+            soup.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+            soup.source_face.push_back(static_cast<Index>(soup.source_face.size()));
+        }
+        RepairedMesh mesh = repaired(soup);
+        ASSERT_FALSE(fill_holes(mesh, 10.0, Context()));
+        ASSERT_EQ(mesh.components.size(), 2u);
+        EXPECT_EQ(mesh.components[1].surrounded_by, 0u);
+        EXPECT_EQ(mesh.components[1].cavity, inward);
+        EXPECT_NEAR(mesh.components[1].volume, (inward ? -1 : 1) * prism_volume(8) / 8, 1e-12);
     }
 }
 
