@@ -49,8 +49,8 @@ enum class Closure {
     solid,    //!< Open components are refused.
 };
 
-//! A fit that stays fair enough for reflections to run smoothly over the facets of a mesh: on the
-//! models of docs/results/closed.md it costs a tenth of the rms error.
+//! A fit that stays fair enough for reflections to run smoothly over the facets of a mesh, for a
+//! little more distance.
 inline FitOptions smooth_fit()
 {
     FitOptions fit;

@@ -79,4 +79,8 @@ struct QuadChart {
 Result<std::vector<QuadChart>> compute_charts(const ManifoldMesh& source, const QuadDomain& domain,
                                               Context& context);
 
+//! Per halfedge of the complex: the angle in radians, on the source, of the corner of its quad
+//! where it starts. Cost linear.
+std::vector<double> corner_angles(const std::vector<QuadChart>& charts);
+
 } // namespace bot2nurbs

@@ -52,9 +52,15 @@ struct SplineNetwork {
     static Index row(Index quad, Index i, Index j) { return 169 * quad + 13 * i + j; }
 };
 
-//! Builds the network of a scheme. Errors: invalid_domain (a valence below 3 inside, or a domain
-//! the scheme does not cover), naming the vertex. \cite peters_1994 \cite eck_hoppe_1996
-Result<SplineNetwork> build_spline_network(const QuadComplex& complex, SplineScheme scheme);
+//! Builds the network of a scheme. `corner_angles`: per halfedge, the angle in radians of the quad
+//! corner where it starts on the shape that will be fitted, as corner_angles() measures it, or
+//! empty. Any gives exact joins; where sharp edges meet, the patches between them lie as the sum
+//! of their angles says, and without it as in a corner of 120 degrees of two patches or 270 of
+//! more: on a shape with other corners they fold. Errors: invalid_domain (a valence below 3 inside,
+//! or a domain the scheme does not cover), naming the vertex; bad_option (another number of angles).
+//! \cite peters_1994 \cite eck_hoppe_1996
+Result<SplineNetwork> build_spline_network(const QuadComplex& complex, SplineScheme scheme,
+                                           const std::vector<double>& corner_angles = {});
 
 class SplineSurface;
 

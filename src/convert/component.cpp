@@ -225,10 +225,12 @@ Result<SurfaceSampleSet> sample_domain(const ManifoldMesh& source, const QuadCom
     return samples;
 }
 
-Result<FitResult> fit_samples(const QuadComplex& complex, SurfaceSampleSet& samples,
-                              const ConvertOptions& options, Context& context)
+Result<FitResult> fit_samples(const QuadComplex& complex, const std::vector<QuadChart>& charts,
+                              SurfaceSampleSet& samples, const ConvertOptions& options,
+                              Context& context)
 {
-    const Result<SplineNetwork> network = build_spline_network(complex, options.spline);
+    const Result<SplineNetwork> network =
+        build_spline_network(complex, options.spline, corner_angles(charts));
     if (!network)
         return network.error();
     return fit_network(*network, samples, options.fit, context);
@@ -378,7 +380,7 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
             fit_options.fit.noise = points->noise / frame.size;
         }
         Result<FitResult> fitted =
-            fit_samples(result.domain.complex, *samples, fit_options, context);
+            fit_samples(result.domain.complex, *charts, *samples, fit_options, context);
         if (!fitted)
             return fitted.error();
         fit = std::move(*fitted);

@@ -7,6 +7,8 @@
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace bot2nurbs {
@@ -99,6 +101,28 @@ Result<std::vector<QuadChart>> compute_charts(const ManifoldMesh& source, const 
         result.push_back(std::move(*charts[q]));
     }
     return result;
+}
+
+std::vector<double> corner_angles(const std::vector<QuadChart>& charts)
+{
+    std::vector<double> angles(4 * charts.size(), 0.0);
+    for (std::size_t q = 0; q < charts.size(); ++q) {
+        const QuadChart& chart = charts[q];
+        const std::vector<Vec2> corner = unit_square();
+        for (const auto& t : chart.triangles) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                const QuadChart::Vertex& apex = chart.vertices[t[k]];
+                const auto at = std::find(corner.begin(), corner.end(), apex.uv);
+                if (at == corner.end())
+                    continue;
+                const Vec3 a = chart.vertices[t[(k + 1) % 3]].position - apex.position;
+                const Vec3 b = chart.vertices[t[(k + 2) % 3]].position - apex.position;
+                angles[4 * q + static_cast<std::size_t>(at - corner.begin())] +=
+                    std::atan2(norm(cross(a, b)), dot(a, b));
+            }
+        }
+    }
+    return angles;
 }
 
 } // namespace bot2nurbs

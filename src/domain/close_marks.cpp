@@ -23,10 +23,41 @@ constexpr double irregularity = 0.5;
 // times coarser than the resolution of matching costs.
 constexpr double out_of_reach = 1e6;
 
-double irregular(Index valence, bool boundary)
+// The quads at a vertex between two sharp edges, or all of them where there are none, and how many
+// there should be.
+struct Sectors {
+    Index count = 1;
+    double wanted = 4.0; // Four round a smooth vertex, else one for every right angle.
+
+    double irregular(double more) const
+    {
+        const double d = count + more - wanted;
+        return irregularity * d * d;
+    }
+};
+
+// Those around the start of halfedge h.
+Sectors sectors_around(const QuadComplex& complex, Index h,
+                       const std::vector<double>& corner_angles)
 {
-    const double d = static_cast<double>(valence) - (boundary ? 2.0 : 4.0);
-    return irregularity * d * d;
+    const auto angle_at = [&](Index g) { return corner_angles.empty() ? 0.0 : corner_angles[g]; };
+    Sectors sectors;
+    double angle = angle_at(h);
+    for (Index g = h; !complex.is_sharp(complex.edge(QuadComplex::prev(g)));) {
+        g = complex.rotate_ccw(g);
+        if (g == h)
+            return sectors; // No sharp edge.
+        ++sectors.count;
+        angle += angle_at(g);
+    }
+    for (Index g = h; !complex.is_sharp(complex.edge(g));) {
+        g = QuadComplex::next(complex.twin(g));
+        ++sectors.count;
+        angle += angle_at(g);
+    }
+    constexpr double right_angle = 1.57079632679489662;
+    sectors.wanted = corner_angles.empty() ? 2.0 : std::max(1.0, angle / right_angle);
+    return sectors;
 }
 
 // The marking as a perfect matching. Node h stands for halfedge h of the complex, "the side of the
@@ -155,17 +186,18 @@ bool forbid_excess(const QuadComplex& complex, const std::vector<char>& marks, M
 
 } // namespace
 
-MarkCosts MarkCosts::of_regularity(const QuadComplex& complex)
+MarkCosts MarkCosts::of_regularity(const QuadComplex& complex,
+                                   const std::vector<double>& corner_angles)
 {
     MarkCosts costs;
     costs.halve.assign(complex.quad_count(), {halving, halving});
     costs.turn.resize(complex.quad_count());
     for (Index q = 0; q < complex.quad_count(); ++q)
         for (Index k = 0; k < 4; ++k) {
-            const Index v = complex.quad(q)[k], valence = complex.valence(v);
-            const bool boundary = complex.twin(complex.halfedge_at(v)) == invalid_index;
-            costs.turn[q][k] = turning + irregular(3, false) + irregular(valence + 1, boundary) -
-                               irregular(valence, boundary);
+            const Sectors at_corner = sectors_around(complex, 4 * q + k, corner_angles);
+            costs.turn[q][k] =
+                std::max(0.0, turning + Sectors{3, 4.0}.irregular(0.0) + at_corner.irregular(1.0) -
+                                  at_corner.irregular(0.0));
         }
     return costs;
 }

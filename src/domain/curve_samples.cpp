@@ -10,8 +10,8 @@ namespace bot2nurbs {
 namespace {
 
 // Samples of a crease count this much more than those of the surface around: the patches on its two
-// sides pull at it, and a crease off its place is seen where a surface is not.
-constexpr double crease_weight = 4.0;
+// sides pull at it, and a crease off its place is seen where a surface is not. See fit.md.
+constexpr double crease_weight = 16.0;
 
 // Place at parameter t along side s of a quad, from corner s to corner s + 1.
 Vec2 on_side(Index s, double t)

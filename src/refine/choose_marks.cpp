@@ -73,7 +73,7 @@ std::vector<char> choose_marks(const Trial& trial, Index max_patches)
     while (!cut.empty() && trial.patches[cut.back()].distance < least)
         cut.pop_back();
 
-    const MarkCosts costs = MarkCosts::of_regularity(complex);
+    const MarkCosts costs = MarkCosts::of_regularity(complex, corner_angles(trial.charts));
     for (; !cut.empty(); cut.resize(cut.size() / 2)) {
         std::vector<char> marks(complex.edge_count(), 0);
         for (const Index q : cut)

@@ -86,7 +86,8 @@ Result<Trial> make_trial(const ManifoldMesh& source, QuadDomain domain,
         first[samples->domain[i].quad] = i;
     add_curve_samples(source, complex, trial.charts, options.samples, *samples);
 
-    const Result<SplineNetwork> network = build_spline_network(complex, options.spline);
+    const Result<SplineNetwork> network =
+        build_spline_network(complex, options.spline, corner_angles(trial.charts));
     if (!network)
         return network.error();
     FitOptions how = options.fit;

@@ -7,6 +7,15 @@
 
 namespace bot2nurbs {
 
+namespace {
+
+//! Towards 0, pi and 2 pi the map from the plane to the tangent plane gets singular.
+constexpr double singular = M_PI / 6.0;
+//! Sectors narrower than this make masks with large weights, and edges wider apart are impossible.
+constexpr double least_sector = M_PI / 4.0, most_sector = 2.0 * M_PI / 3.0;
+
+} // namespace
+
 double corner_fan_angle(Index k)
 {
     if (k == 1)
@@ -14,7 +23,18 @@ double corner_fan_angle(Index k)
     return k == 2 ? 2.0 * M_PI / 3.0 : 1.5 * M_PI;
 }
 
-Result<std::vector<Fan>> find_fans(const QuadComplex& complex)
+double corner_fan_angle(Index k, double measured)
+{
+    if (k == 1)
+        return 0.0;
+    if (measured < M_PI)
+        return std::min(std::max(measured, k * least_sector), M_PI - singular);
+    const double least = std::max(M_PI + singular, k * least_sector);
+    return std::min({std::max(measured, least), 2.0 * M_PI - singular, k * most_sector});
+}
+
+Result<std::vector<Fan>> find_fans(const QuadComplex& complex,
+                                   const std::vector<double>& corner_angles)
 {
     std::vector<Fan> fans;
     fans.reserve(complex.vertex_count());
@@ -66,7 +86,11 @@ Result<std::vector<Fan>> find_fans(const QuadComplex& complex)
                 fan.kind = FanKind::smooth;
                 fan.alpha = M_PI;
             } else {
-                fan.alpha = corner_fan_angle(fan.sector_count());
+                double measured = 0.0;
+                for (const Index s : fan.sectors)
+                    measured += corner_angles.empty() ? 0.0 : corner_angles[s];
+                fan.alpha = measured > 0.0 ? corner_fan_angle(fan.sector_count(), measured)
+                                           : corner_fan_angle(fan.sector_count());
             }
         }
     }

@@ -28,13 +28,20 @@ struct Fan {
     Index edge_count() const { return sector_count() + (kind == FanKind::closed ? 0 : 1); }
 };
 
-//! Default angle of a corner fan of k sectors. Any value
-//! with sin(alpha) != 0 and alpha / k <= 2 pi / 3 gives exact smoothness within the fan.
+//! Angle of the parameter plane of a corner fan of k sectors where the shape to be fitted is not
+//! known. Any value with sin(alpha) != 0 and alpha / k <= 2 pi / 3 gives exact smoothness within
+//! the fan.
 double corner_fan_angle(Index k);
 
+//! The angle for a fan that spans `measured` on the shape. The plane is mapped to the tangent plane
+//! of the surface by the end tangents of its two sharp edges, so that it must be on the same side
+//! of pi: else the edges between leave on the wrong side and the patches fold.
+double corner_fan_angle(Index k, double measured);
+
 //! All fans, by vertex; fans of a vertex counter-clockwise from its first sharp edge (a closed fan
-//! from halfedge_at). Cost linear. Errors: invalid_domain naming a vertex inside with fewer than
-//! three quads.
-Result<std::vector<Fan>> find_fans(const QuadComplex& complex);
+//! from halfedge_at). `corner_angles`: see build_spline_network(). Cost linear. Errors:
+//! invalid_domain naming a vertex inside with fewer than three quads.
+Result<std::vector<Fan>> find_fans(const QuadComplex& complex,
+                                   const std::vector<double>& corner_angles);
 
 } // namespace bot2nurbs

@@ -8,9 +8,15 @@
 
 namespace bot2nurbs {
 
-Result<SplineNetwork> build_spline_network(const QuadComplex& complex, SplineScheme scheme)
+Result<SplineNetwork> build_spline_network(const QuadComplex& complex, SplineScheme scheme,
+                                           const std::vector<double>& corner_angles)
 {
-    auto fans = find_fans(complex);
+    if (!corner_angles.empty() && corner_angles.size() != complex.halfedge_count())
+        return Error{ErrorCode::bad_option,
+                     std::to_string(corner_angles.size()) + " angles are not one for each of " +
+                         std::to_string(complex.halfedge_count()) + " quad corners",
+                     invalid_index};
+    auto fans = find_fans(complex, corner_angles);
     if (!fans)
         return fans.error();
     SplineNetwork network;

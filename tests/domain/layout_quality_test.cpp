@@ -47,6 +47,33 @@ TEST(LayoutQuality, of_the_cube_on_a_sphere_is_the_same_for_its_six_sides)
     EXPECT_GT(q.angle.least, 70.0);
 }
 
+TEST(CornerAngles, add_up_to_the_angle_of_the_mesh_around_a_vertex)
+{
+    for (const HandDomain& hand :
+         {sphere_cube(1, 8), with_refined_carrier(torus_askew()), open_cylinder(4, 2, 5)}) {
+        Context context;
+        const auto charts = compute_charts(hand.mesh, hand.domain, context);
+        ASSERT_TRUE(charts.ok());
+        const std::vector<double> angles = corner_angles(*charts);
+        const QuadComplex& k = hand.domain.complex;
+        ASSERT_EQ(angles.size(), k.halfedge_count());
+        std::vector<double> sum(k.vertex_count(), 0.0), around(k.vertex_count(), 0.0);
+        for (Index h = 0; h < k.halfedge_count(); ++h)
+            sum[k.from(h)] += angles[h];
+        const ManifoldMesh& mesh = hand.domain.carrier.mesh;
+        for (Index v = 0; v < k.vertex_count(); ++v)
+            for (Index h = 0; h < mesh.halfedge_count(); ++h)
+                if (mesh.from(h) == hand.domain.vertices[v]) {
+                    const Vec3 a = mesh.position(mesh.to(h)) - mesh.position(mesh.from(h));
+                    const Vec3 b = mesh.position(mesh.from(ManifoldMesh::prev(h))) -
+                                   mesh.position(mesh.from(h));
+                    around[v] += std::atan2(norm(cross(a, b)), dot(a, b));
+                }
+        for (Index v = 0; v < k.vertex_count(); ++v)
+            EXPECT_NEAR(sum[v], around[v], 1e-9) << v;
+    }
+}
+
 TEST(LayoutQuality, names_the_patch_that_is_worst)
 {
     // On a torus the outermost quads are the largest, the innermost the smallest.

@@ -91,6 +91,28 @@ TEST(CloseMarks, leaves_every_quad_with_none_two_or_four_and_keeps_what_was_mark
         }
 }
 
+TEST(MarkCosts, make_a_turn_dear_where_a_corner_has_its_quads_and_cheap_where_it_lacks_one)
+{
+    // The corners of a cube with creases: each face has a quad there, and it is of 90 degrees.
+    const Domain plain = fixtures::cube();
+    const QuadComplex& k = plain.complex;
+    std::vector<std::pair<Index, Index>> creases;
+    for (Index e = 0; e < k.edge_count(); ++e)
+        creases.emplace_back(k.from(k.halfedge_of_edge(e)), k.to(k.halfedge_of_edge(e)));
+    const auto sharp = QuadComplex::build(k.vertex_count(), k.quads(), creases);
+    ASSERT_TRUE(sharp.ok());
+    const auto turn_at = [](const QuadComplex& complex, double angle) {
+        return MarkCosts::of_regularity(complex,
+                                        std::vector<double>(complex.halfedge_count(), angle))
+            .turn[0][0];
+    };
+    const double right_angle = 0.5 * M_PI;
+    EXPECT_LT(turn_at(k, right_angle), turn_at(*sharp, right_angle)); // 3 of 4 against 1 of 1
+    EXPECT_LT(turn_at(*sharp, 2.0 * right_angle), turn_at(*sharp, right_angle));
+    EXPECT_GT(turn_at(*sharp, 0.2 * right_angle), 0.0);
+    EXPECT_GE(turn_at(*sharp, 4.0 * right_angle), 0.0);
+}
+
 TEST(CloseMarks, adds_nothing_to_no_marks_and_to_whole_strips)
 {
     std::mt19937 random(4);

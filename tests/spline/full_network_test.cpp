@@ -25,7 +25,7 @@ std::vector<Domain> all_domains()
 
 std::vector<Fan> fans_of(const QuadComplex& k)
 {
-    auto fans = find_fans(k);
+    auto fans = find_fans(k, {});
     return fans ? std::move(*fans) : std::vector<Fan>();
 }
 
