@@ -23,8 +23,8 @@ struct MarkCosts {
 
     //! Costs in numbers of new quads, with a surcharge for irregular vertices: a vertex that gets a
     //! fifth quad is dear, a sixth dearer, one that gets its fourth is cheap. Between sharp edges
-    //! there should be a quad for every right angle of `corner_angles` (see build_spline_network()),
-    //! or two where they are not given.
+    //! there should be a quad for every right angle of `corner_angles` (see
+    //! build_spline_network()), or two where they are not given.
     static MarkCosts of_regularity(const QuadComplex& complex,
                                    const std::vector<double>& corner_angles = {});
     //! The sum over all quads for marked edges of which every quad has none, two or four.

@@ -57,8 +57,8 @@ struct SplineNetwork {
 //! empty. Any gives exact joins; where sharp edges meet, the patches between them lie as the sum
 //! of their angles says, and without it as in a corner of 120 degrees of two patches or 270 of
 //! more: on a shape with other corners they fold. Errors: invalid_domain (a valence below 3 inside,
-//! or a domain the scheme does not cover), naming the vertex; bad_option (another number of angles).
-//! \cite peters_1994 \cite eck_hoppe_1996
+//! or a domain the scheme does not cover), naming the vertex; bad_option (another number of
+//! angles). \cite peters_1994 \cite eck_hoppe_1996
 Result<SplineNetwork> build_spline_network(const QuadComplex& complex, SplineScheme scheme,
                                            const std::vector<double>& corner_angles = {});
 
