@@ -189,6 +189,13 @@ std::variant<Command, int> parse_command(int argc, char** argv)
         app.add_flag("--open", "Open meshes become open surfaces, without a warning")->group(input);
     CLI::Option* solid =
         app.add_flag("--solid", "Reject open meshes")->excludes(open)->group(input);
+    std::string weld;
+    CLI::Option* weld_option =
+        app.add_option("--weld", weld,
+                       "Join corners of open edges up to so far apart: a length in units of INPUT, "
+                       "or a percentage of its diagonal (default: only copies)")
+            ->type_name("0.01|0.001%")
+            ->group(input);
     std::string fill_holes;
     CLI::Option* fill_holes_option =
         app.add_option("--fill-holes", fill_holes,
@@ -325,6 +332,14 @@ std::variant<Command, int> parse_command(int argc, char** argv)
         std::fprintf(stderr, "bot2nurbs: --layout %s is neither eck nor quads=FILE\n",
                      layout.c_str());
         return exit_code(ErrorCode::bad_option);
+    }
+    if (*weld_option) {
+        o.weld = parse_length(weld);
+        if (!o.weld || !(o.weld->value >= 0.0)) {
+            std::fprintf(stderr, "bot2nurbs: --weld %s is neither a length nor a percentage\n",
+                         weld.c_str());
+            return exit_code(ErrorCode::bad_option);
+        }
     }
     if (*fill_holes_option) {
         o.fill_holes = parse_length(fill_holes);

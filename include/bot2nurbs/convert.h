@@ -92,6 +92,9 @@ struct ConvertOptions {
     //! Holes up to this size, the diagonal of their box, are filled before anything else; >= 0. Of
     //! points: places without any, in place of cloud.reconstruct.fill_holes.
     std::optional<Length> fill_holes;
+    //! Vertices of open edges up to so far apart become one; by default copies only. At most a
+    //! tenth of the diagonal. \see repair_mesh()
+    std::optional<Length> weld;
 
     bool repair = true;  //!< Make harmless repairs; false: reject an input that needs any.
     bool strict = false; //!< Reject self-intersecting input instead of warning.

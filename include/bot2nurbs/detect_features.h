@@ -24,9 +24,9 @@ struct FeatureOptions {
     //! diagonal, if it has three edges at least.
     double least_length = 0.03;
     //! Nothing is kept when less than this share of the length of all creases is in clear ones:
-    //! connected, sharp throughout, between smooth sides, without loose ends. Then what is sharp is
-    //! the grain of a scan or the ends of ridges, not the edges of a part. 0 keeps them all the
-    //! same.
+    //! connected, sharp throughout, ridges or valleys from end to end, between smooth sides,
+    //! without loose ends. Then what is sharp is the grain of a scan or the ends of ridges, not the
+    //! edges of a part. 0 keeps them all the same.
     double least_clear_share = 0.8;
     //! A crease or boundary has a corner where it turns by this angle or more.
     double corner_angle = 45.0;

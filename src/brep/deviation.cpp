@@ -14,11 +14,11 @@ namespace bot2nurbs {
 
 namespace {
 
-//! Places measured per direction. A closest point costs one or two microseconds, so these keep the
-//! whole under half a second on one core; two or three times as many changed root mean squares by
-//! less than half a percent.
-constexpr std::size_t face_samples = 60000;
-constexpr std::size_t surface_samples = 40000;
+//! Places measured per direction, for a Bezier piece and at most. A closest point costs one or two
+//! microseconds, so the whole stays under half a second on one core; two or three times as many
+//! changed root mean squares by less than half a percent.
+constexpr std::size_t face_samples_per_piece = 25, most_face_samples = 60000;
+constexpr std::size_t surface_samples_per_piece = 16, most_surface_samples = 40000;
 //! Midpoints per Bezier piece and direction: a bicubic piece bends too little for more than the
 //! upper bound to show anything new, and fewer than the lower bound could miss a wiggle.
 constexpr Index least_side = 3, most_side = 16;
@@ -44,21 +44,20 @@ double fraction(double x)
     return x - std::floor(x);
 }
 
-//! Points spread evenly by area.
-std::vector<Place> source_places(const ManifoldMesh& source)
+//! `count` points spread evenly by area.
+std::vector<Place> source_places(const ManifoldMesh& source, std::size_t count)
 {
     std::vector<Place> places;
-    places.reserve(face_samples);
+    places.reserve(count);
     double total = 0.0;
     for (Index f = 0; f < source.face_count(); ++f)
         total += 0.5 * norm(source.area_vector(f));
-    const double step = total / static_cast<double>(face_samples);
+    const double step = total / static_cast<double>(count);
     double covered = 0.0;
     std::size_t taken = 0;
     for (Index f = 0; f < source.face_count(); ++f) {
         covered += 0.5 * norm(source.area_vector(f));
-        for (; taken < face_samples && (static_cast<double>(taken) + 0.5) * step <= covered;
-             ++taken) {
+        for (; taken < count && (static_cast<double>(taken) + 0.5) * step <= covered; ++taken) {
             double u = fraction(static_cast<double>(taken) * r2_u);
             double v = fraction(static_cast<double>(taken) * r2_v);
             if (u + v > 1.0) {
@@ -102,9 +101,11 @@ std::vector<Place> surface_places(const SplineSurface& surface)
     double total = 0.0;
     for (Index p = 0; p < pieces; ++p)
         total += area[p] = piece_area(surface, p);
+    const double samples = static_cast<double>(
+        std::min(most_surface_samples, surface_samples_per_piece * std::size_t{pieces}));
     std::vector<Place> places;
     for (Index p = 0; p < pieces; ++p) {
-        const double wanted = total > 0.0 ? std::sqrt(surface_samples * area[p] / total) : 0.0;
+        const double wanted = total > 0.0 ? std::sqrt(samples * area[p] / total) : 0.0;
         add_midpoints(
             surface, p,
             static_cast<Index>(std::clamp<double>(std::ceil(wanted), least_side, most_side)),
@@ -164,7 +165,10 @@ Result<Deviation> measure_deviation(const ManifoldMesh& source, const QuadComple
         const SurfaceLocator locator(complex, surface, seed_cells, &context);
         if (context.cancelled())
             return Context::cancelled_error("deviation");
-        const std::vector<Place> places = source_places(source);
+        const std::size_t wanted =
+            face_samples_per_piece * pieces_per_quad * std::size_t{surface.patch_count()};
+        const std::vector<Place> places =
+            source_places(source, std::min(most_face_samples, wanted));
         const auto distances =
             measure(places, context, [&](const Vec3& p) { return locator.closest(p).distance; });
         if (!distances)

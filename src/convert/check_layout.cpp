@@ -27,6 +27,7 @@ std::optional<Error> check_layout(const ConvertOptions& o)
     const std::pair<bool, const char*> of_mesh[] = {
         {o.domain_out.has_value(), "--domain-out"},
         {o.fill_holes.has_value(), "--fill-holes"},
+        {o.weld.has_value(), "--weld"},
         {o.components == ComponentMode::largest, "--components largest"},
         {o.features == FeatureMode::all, "--features DEGREES"},
         {o.strict, "--strict"}};

@@ -322,6 +322,8 @@ std::optional<Error> ConvertOptions::check() const
         return failed;
     if (fill_holes && !(fill_holes->value >= 0.0 && std::isfinite(fill_holes->value)))
         return bad_option("the size of holes to fill must be a length that is not negative");
+    if (weld && !(weld->value >= 0.0 && std::isfinite(weld->value)))
+        return bad_option("--weld must be a length or percentage that is not negative");
     if (std::optional<Error> failed = fit.check())
         return failed;
     if (std::optional<Error> failed = feature_options.check())

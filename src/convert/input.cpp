@@ -26,6 +26,27 @@ std::optional<Error> refuse_repairs(const RepairedMesh& mesh)
     return std::nullopt;
 }
 
+//! A soup of triangles that do not meet makes a patch of each, which nobody wants.
+std::optional<Error> refuse_loose(const RepairedMesh& mesh)
+{
+    constexpr std::size_t some = 20;
+    std::size_t single = 0;
+    Index first = invalid_index;
+    for (const MeshComponent& c : mesh.components)
+        if (c.mesh.face_count() == 1) {
+            first = std::min(first, c.source_face[0]);
+            ++single;
+        }
+    if (single < some || 2 * single < mesh.components.size())
+        return std::nullopt;
+    return Error{ErrorCode::bad_geometry,
+                 fmt::format("{} of {} components are single triangles (first: face {}): corners "
+                             "that should be one do not meet. --weld DISTANCE joins them, or "
+                             "--components largest leaves them out",
+                             single, mesh.components.size(), first),
+                 first};
+}
+
 std::optional<Error> refuse_flat(const RepairedMesh& mesh)
 {
     for (const RepairNote& note : mesh.notes)
@@ -62,6 +83,8 @@ std::optional<Error> refuse(const ConvertOptions& options, const CloudReport* cl
         if (std::optional<Error> refused = refuse_open(mesh))
             return refused;
     if (std::optional<Error> refused = refuse_flat(mesh))
+        return refused;
+    if (std::optional<Error> refused = refuse_loose(mesh))
         return refused;
     return options.strict ? refuse_self_intersections(found) : std::nullopt;
 }
@@ -117,6 +140,19 @@ Status apply_options(const ConvertOptions& options, bool cloud, RepairedMesh& me
     if (options.components == ComponentMode::largest)
         keep_largest(mesh);
     return {};
+}
+
+RepairOptions repair_options(const ConvertOptions& options, const TriangleSoup& soup)
+{
+    RepairOptions repair;
+    if (!options.weld)
+        return repair;
+    Box3 box;
+    for (const Vec3& p : soup.positions)
+        box.add(p);
+    const double diagonal = box.diagonal();
+    repair.weld = diagonal > 0.0 ? options.weld->of(diagonal) / diagonal : 0.0;
+    return repair;
 }
 
 struct LoadedInput {
@@ -203,7 +239,8 @@ Result<PreparedInput> prepare_input(const ConvertOptions& options, Context& cont
     input.units = loaded->soup.units;
     input.found = std::move(loaded->found);
     input.cloud = std::move(loaded->cloud);
-    Result<RepairedMesh> repaired = repair_mesh(std::move(loaded->soup), {}, context);
+    const RepairOptions how = repair_options(options, loaded->soup);
+    Result<RepairedMesh> repaired = repair_mesh(std::move(loaded->soup), how, context);
     if (!repaired)
         return repaired.error();
     input.mesh = std::move(*repaired);
@@ -222,7 +259,8 @@ Result<InputReport> check_input(const ConvertOptions& options, Context& context)
         return loaded.error();
     InputReport report;
     report.mesh = std::move(loaded->found);
-    Result<RepairedMesh> repaired = repair_mesh(std::move(loaded->soup), {}, context);
+    const RepairOptions how = repair_options(options, loaded->soup);
+    Result<RepairedMesh> repaired = repair_mesh(std::move(loaded->soup), how, context);
     if (loaded->cloud)
         report.cloud = loaded->cloud->report;
     if (repaired) {

@@ -89,6 +89,13 @@ Json options_json(const ConvertOptions& o)
     j["robust"] = o.fit.robust;
     j["components"] = component_names[static_cast<std::size_t>(o.components)];
     j["fill_holes"] = o.fill_holes ? Json(length_text(*o.fill_holes)) : Json(nullptr);
+    j["weld"] = o.weld ? Json(length_text(*o.weld)) : Json(nullptr);
+    j["features"] = o.features == FeatureMode::off   ? Json("off")
+                    : o.features == FeatureMode::all ? Json(o.feature_options.angle)
+                                                     : Json("auto");
+    j["closure"] = o.closure == Closure::open    ? "open"
+                   : o.closure == Closure::solid ? "solid"
+                                                 : "as_input";
     j["repair"] = o.repair;
     j["strict"] = o.strict;
     j["layout"] = o.cage ? "cage" : o.quads ? "quads=" + *o.quads : "eck";

@@ -63,13 +63,15 @@ TEST(DetectFeatures, of_smooth_shapes_are_none)
 TEST(DetectFeatures, the_grain_of_a_rough_surface_is_smoothed_and_listed)
 {
     // An edge of icosphere(4) is about 0.08 long: this noise turns many by more than 35 degrees.
-    const ManifoldMesh mesh = noisy(icosphere(4), 0.025, 7);
-    const MeshFeatures f = detect(mesh);
-    EXPECT_GT(f.sharp_edges, 100u);
-    EXPECT_TRUE(f.creases.empty());
-    EXPECT_EQ(f.smoothed.size(), f.sharp_edges);
-    for (const auto& [a, b] : f.smoothed)
-        EXPECT_TRUE(mesh.find_halfedge(a, b) != invalid_index);
+    for (const double size : {0.025, 0.03, 0.04, 0.05}) {
+        const ManifoldMesh mesh = noisy(icosphere(4), size, 7);
+        const MeshFeatures f = detect(mesh);
+        EXPECT_GT(f.sharp_edges, 100u);
+        EXPECT_TRUE(f.creases.empty()) << size;
+        EXPECT_EQ(f.smoothed.size(), f.sharp_edges);
+        for (const auto& [a, b] : f.smoothed)
+            EXPECT_TRUE(mesh.find_halfedge(a, b) != invalid_index);
+    }
 }
 
 TEST(DetectFeatures, of_a_noisy_cube_are_still_its_edges)
