@@ -140,6 +140,105 @@ bool solve_inner(const Overlay& overlay, const std::vector<Edge>& edges, std::ve
     return true;
 }
 
+// Squared L2 stretch of the inverse of a map, 1 for a similarity: around every vertex, and on
+// average over the area.
+struct Stretch {
+    std::vector<double> at;
+    double mean = 0.0;
+};
+
+// Triangles that rounding has collapsed or folded count as squeezed by so much.
+constexpr double most_squeezed = 1e-60;
+
+Stretch measure_stretch(const Overlay& overlay, const std::vector<Vec2>& uv)
+{
+    double source_area = 0.0, target_area = 0.0;
+    std::vector<double> twice_area(overlay.triangles.size());
+    for (std::size_t i = 0; i < overlay.triangles.size(); ++i) {
+        const auto& t = overlay.triangles[i];
+        const Vec3& apex = overlay.vertices[t[0]].position;
+        twice_area[i] = norm(
+            cross(overlay.vertices[t[1]].position - apex, overlay.vertices[t[2]].position - apex));
+        source_area += twice_area[i];
+        target_area += cross(uv[t[1]] - uv[t[0]], uv[t[2]] - uv[t[0]]);
+    }
+    Stretch stretch;
+    stretch.at.assign(uv.size(), 0.0);
+    if (!(source_area > 0.0))
+        return stretch;
+    const double scale = target_area / source_area;
+    std::vector<double> area(uv.size(), 0.0);
+    for (std::size_t i = 0; i < overlay.triangles.size(); ++i) {
+        if (!(twice_area[i] > 0.0))
+            continue;
+        const auto& t = overlay.triangles[i];
+        const Vec3 p = overlay.vertices[t[1]].position - overlay.vertices[t[0]].position;
+        const Vec3 q = overlay.vertices[t[2]].position - overlay.vertices[t[0]].position;
+        const Vec2 a = uv[t[1]] - uv[t[0]], b = uv[t[2]] - uv[t[0]];
+        const double target = std::max(cross(a, b), most_squeezed * scale * twice_area[i]);
+        const Vec3 du = (b.y * p - a.y * q) / target, dv = (a.x * q - b.x * p) / target;
+        const double weighted = twice_area[i] * 0.5 * scale * (norm_squared(du) + norm_squared(dv));
+        stretch.mean += weighted / source_area;
+        for (const Index v : t) {
+            stretch.at[v] += weighted;
+            area[v] += twice_area[i];
+        }
+    }
+    for (std::size_t v = 0; v < area.size(); ++v)
+        stretch.at[v] = area[v] > 0.0 ? stretch.at[v] / area[v] : 1.0;
+    return stretch;
+}
+
+// Makes springs weaker where much surface is squeezed into little of the plane. Positive and
+// symmetric they stay. \cite yoshizawa_2004 divide by the stretch of one end; with both ends that
+// is a power of 1/4 of its squares.
+void weaken(const Stretch& stretch, double power, std::vector<Edge>& edges)
+{
+    constexpr double least = 1e-8, most = 1e48;
+    for (Edge& e : edges)
+        e.weight /= std::pow(std::clamp(stretch.at[e.a], least, most) *
+                                 std::clamp(stretch.at[e.b], least, most),
+                             power);
+}
+
+// Maps with these weights, then with weaker and weaker ones where that lowers the stretch, until it
+// is low or so many solves are done. \return whether the map is injective.
+bool map_with_little_stretch(const Overlay& overlay, const std::vector<Vec2>& border,
+                             std::vector<Edge> edges, std::vector<Vec2>& uv)
+{
+    constexpr double most_power = 0.25, least_power = 0.03, low_stretch = 4.0;
+    constexpr int most_solves = 16;
+    std::vector<Vec2> next = border;
+    if (!solve_inner<double>(overlay, edges, next))
+        return false;
+    bool injective = false;
+    double power = most_power, least = INFINITY;
+    Stretch stretch;
+    std::vector<Edge> weights;
+    for (int solves = 1;; ++solves) {
+        Stretch now = measure_stretch(overlay, next);
+        const bool valid = is_injective(overlay, next);
+        if ((valid && !injective) || (valid == injective && now.mean < least)) {
+            if (solves > 1)
+                power = std::min(most_power, 1.5 * power);
+            uv = next;
+            injective = valid;
+            least = now.mean;
+            stretch = std::move(now);
+            weights = edges;
+        } else {
+            power *= 0.5;
+        }
+        if ((injective && least < low_stretch) || solves == most_solves || power < least_power)
+            return injective;
+        edges = weights;
+        weaken(stretch, power, edges);
+        next = border;
+        if (!solve_inner<double>(overlay, edges, next))
+            return injective;
+    }
+}
+
 } // namespace
 
 std::vector<Vec2> regular_polygon(Index sides)
@@ -178,9 +277,9 @@ std::optional<ConvexMap> map_to_polygon(const Overlay& overlay, const std::vecto
             continue;
         ConvexMap map{border, level};
         const std::vector<Edge> edges = weighted_edges(overlay, level == MapLevel::harmonic);
-        const bool solved = level == MapLevel::exact ? solve_inner<Extended>(overlay, edges, map.uv)
-                                                     : solve_inner<double>(overlay, edges, map.uv);
-        if (solved && is_injective(overlay, map.uv))
+        if (level == MapLevel::exact
+                ? solve_inner<Extended>(overlay, edges, map.uv) && is_injective(overlay, map.uv)
+                : map_with_little_stretch(overlay, border, edges, map.uv))
             return map;
     }
     return std::nullopt;

@@ -25,7 +25,10 @@ std::vector<Vec2> unit_square();
 //! weights: cotangents, bounded below, so that the map is the discrete harmonic one wherever the
 //! triangulation is Delaunay, and by Tutte and Floater injective in any case; uniform weights when
 //! rounding folds a triangle; then uniform weights in extended precision. Injectivity is decided
-//! exactly for every triangle. \cite eck_1995, section 3, \cite tutte_1963 \cite floater_1997
+//! exactly for every triangle. Where the map squeezes much surface into little of the polygon (a
+//! limb, a long way round a hole), the weights there are lowered, which any positive ones may be,
+//! and it is solved again. \cite eck_1995, section 3, \cite tutte_1963 \cite floater_1997
+//! \cite yoshizawa_2004
 //! Empty when even that map has a triangle that is not positive after rounding to doubles.
 //! `first` is the level to begin with.
 std::optional<ConvexMap> map_to_polygon(const Overlay& overlay, const std::vector<Vec2>& corners,

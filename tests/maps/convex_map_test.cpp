@@ -163,6 +163,20 @@ TEST(ConvexMap, of_a_tower_is_injective_down_to_triangles_of_1e_minus_30_or_refu
     EXPECT_FALSE(map_to_polygon(tower(80), regular_polygon(3)));
 }
 
+TEST(ConvexMap, of_a_tower_leaves_room_for_its_top)
+{
+    // Without, the stretch grows by a factor of more than a hundred every three rings.
+    const std::pair<Index, double> most[] = {{5, 20.0}, {10, 200.0}, {20, 1e5}, {35, 1e9}};
+    for (const auto& [rings, stretch] : most) {
+        const Overlay overlay = tower(rings);
+        const auto map = map_to_polygon(overlay, regular_polygon(3));
+        const auto plain = map_to_polygon(overlay, regular_polygon(3), MapLevel::exact);
+        ASSERT_TRUE(map && plain);
+        EXPECT_LT(measure_distortion(overlay, map->uv).stretch, stretch) << rings;
+        EXPECT_GT(measure_distortion(overlay, plain->uv).stretch, std::pow(10.0, 0.7 * rings));
+    }
+}
+
 TEST(ConvexMap, a_folded_triangle_is_noticed)
 {
     const Overlay overlay = flat_square(4);
