@@ -113,7 +113,6 @@ def judge_occ(judge, path, closed, volume):
 def convert(model, options, judge, work):
     """One row of the table, and what failed."""
     row = {"name": model.stem}
-    _, checked = run_json([options.binary, "--check", model, "--quiet", "--json", "-"])
     outputs = [work / (model.stem + extension) for extension in (".3dm", ".step")]
     report_path = work / (model.stem + ".json")
     for path in (*outputs, report_path):
@@ -122,7 +121,7 @@ def convert(model, options, judge, work):
         [options.binary, model, *outputs, "--json", report_path], work / (model.stem + ".log")
     )
     row.update(exit=code, seconds=seconds, memory=memory)
-    if code != 0 or not checked:
+    if code != 0:
         lines = (work / (model.stem + ".log")).read_text().splitlines()
         row["verdict"] = next((x for x in reversed(lines) if x.startswith("error")), "no message")
         report = json.loads(report_path.read_text()) if report_path.is_file() else {}
@@ -134,8 +133,7 @@ def convert(model, options, judge, work):
     components = report["components"]
     closed = [c["boundary_loops"] == 0 for c in components]
     euler = sum(2 - 2 * c["genus"] - c["boundary_loops"] for c in components)
-    # A mesh that is inside out is turned, so the result's volume is positive.
-    volume = sum(abs(c["volume"]) for c in checked["components"])
+    volume = sum(c["volume"] for c in report["input"]["components"])
     opennurbs, result_euler = judge_3dm(outputs[0], closed)
     open_cascade = judge_occ(judge, outputs[1], closed, volume)
     stretch = max(

@@ -283,6 +283,7 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
     outcome.faces = component.mesh.face_count();
     outcome.genus = component.genus;
     outcome.boundary_loops = component.boundary_loops;
+    outcome.source_volume = component.volume;
     outcome.diagonal = component.mesh.box().diagonal();
 
     stage("features");

@@ -361,7 +361,9 @@ Json input_json(const ConvertOptions& options, const ConvertReport& report)
     j["units"] = report.units;
     j["components"] = Json::array();
     for (const ComponentOutcome& c : report.components)
-        j["components"].push_back({{"genus", c.genus}, {"boundary_loops", c.boundary_loops}});
+        j["components"].push_back({{"genus", c.genus},
+                                   {"boundary_loops", c.boundary_loops},
+                                   {"volume", c.source_volume}});
     j["repairs"] = Json::array();
     for (const RepairNote& note : report.repairs)
         j["repairs"].push_back(repair_json(note));
