@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "convert/constraints_input.h"
 
-#include "convert/text_file.h"
+#include "convert/component_file.h"
 
 #include <algorithm>
 #include <set>
@@ -25,14 +25,7 @@ Vec3 place_of(const ConstraintSite& site, const ManifoldMesh& source)
 Result<std::vector<DomainConstraints>> read_constraints(const std::string& path,
                                                         const RepairedMesh& mesh)
 {
-    const Result<std::string> text = read_text(path);
-    if (!text)
-        return text.error();
-    std::vector<ManifoldMesh> sources;
-    for (const MeshComponent& c : mesh.components)
-        sources.push_back(c.mesh);
-    Result<std::vector<DomainConstraints>> constraints = constraint_list_from_json(*text, sources);
-    return constraints ? std::move(constraints) : in_file(path, constraints.error());
+    return read_for_components(path, mesh, constraint_list_from_json);
 }
 
 DomainConstraints constraints_used(const DomainConstraints& asked,

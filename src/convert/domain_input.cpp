@@ -4,8 +4,8 @@
 #include "bot2nurbs/convert.h"
 #include "bot2nurbs/domain_file.h"
 #include "bot2nurbs/validate_domain.h"
+#include "convert/component_file.h"
 #include "convert/input.h"
-#include "convert/text_file.h"
 
 #include <fmt/format.h>
 #include <utility>
@@ -16,14 +16,7 @@ namespace {
 
 Result<std::vector<QuadDomain>> read_domains(const std::string& path, const RepairedMesh& mesh)
 {
-    const Result<std::string> text = read_text(path);
-    if (!text)
-        return text.error();
-    std::vector<ManifoldMesh> sources;
-    for (const MeshComponent& c : mesh.components)
-        sources.push_back(c.mesh);
-    Result<std::vector<QuadDomain>> domains = domains_from_json(*text, sources);
-    return domains ? std::move(domains) : in_file(path, domains.error());
+    return read_for_components(path, mesh, domains_from_json);
 }
 
 std::optional<Error> first_defect(const std::string& path, const DomainValidation& validation)

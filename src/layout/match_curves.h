@@ -5,6 +5,7 @@
 #include "layout/curve_line.h"
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace bot2nurbs {
@@ -31,6 +32,16 @@ struct CurveMatch {
     std::vector<CurveLine> lines;
     std::vector<std::vector<CurveSite>> sites; //!< Per line, ascending.
     std::vector<CurveEdge> edges;
+
+    //! From where to where on its line an edge runs, by arc length; over the start of a closed line
+    //! the end is beyond its length.
+    std::pair<double, double> span(const CurveEdge& edge) const
+    {
+        const std::vector<CurveSite>& at = sites[edge.line];
+        const double begin = at[edge.first_site].s;
+        const double end = at[(edge.first_site + 1) % at.size()].s;
+        return {begin, end > begin ? end : end + lines[edge.line].length()};
+    }
 };
 
 //! A quad mesh as it lies beside a mesh.

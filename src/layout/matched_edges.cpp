@@ -48,11 +48,7 @@ std::map<std::pair<Index, Index>, double> covered_lengths(const CurveMatch& matc
     std::map<std::pair<Index, Index>, double> covered;
     for (const CurveEdge& e : match.edges) {
         const CurveLine& line = match.lines[e.line];
-        const std::vector<CurveSite>& sites = match.sites[e.line];
-        const double begin = sites[e.first_site].s;
-        double end = sites[(e.first_site + 1) % sites.size()].s;
-        if (end <= begin)
-            end += line.length();
+        const auto [begin, end] = match.span(e);
         for (std::size_t i = 0; i + 1 < line.arc.size(); ++i)
             for (const double shift : {0.0, line.length()})
                 covered[sorted(line.vertices[i], line.vertices[i + 1])] +=

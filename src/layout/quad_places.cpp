@@ -183,11 +183,7 @@ private:
     void cover(const CurveEdge& e)
     {
         const CurveLine& line = match_.lines[e.line];
-        const std::vector<CurveSite>& sites = match_.sites[e.line];
-        const double begin = sites[e.first_site].s;
-        double end = sites[(e.first_site + 1) % sites.size()].s;
-        if (end <= begin)
-            end += line.length();
+        const auto [begin, end] = match_.span(e);
         for (std::size_t i = 0; i + 1 < line.arc.size(); ++i)
             for (const double shift : {0.0, line.length()})
                 if (line.arc[i] + shift < end && line.arc[i + 1] + shift > begin) {

@@ -2,7 +2,7 @@
 #include "bot2nurbs/read_mesh.h"
 
 #include "mesh_fixtures.h"
-#include "scratch_file.h"
+#include "read_fixtures.h"
 
 #include <gtest/gtest.h>
 
@@ -13,6 +13,8 @@
 #include <random>
 
 using namespace bot2nurbs;
+using bot2nurbs::test::expect_error_of;
+using bot2nurbs::test::put;
 using bot2nurbs::test::ScratchFile;
 
 namespace {
@@ -28,23 +30,7 @@ Result<TriangleSoup> read(const std::string& name, const std::string& bytes)
 void expect_error(const std::string& name, const std::string& bytes, ErrorCode code,
                   const std::vector<std::string>& words)
 {
-    SCOPED_TRACE(name + ": " + bytes.substr(0, 60));
-    const Result<TriangleSoup> soup = read(name, bytes);
-    ASSERT_FALSE(soup);
-    EXPECT_EQ(soup.error().code, code);
-    EXPECT_NE(soup.error().message.find(name), std::string::npos);
-    for (const std::string& word : words)
-        EXPECT_NE(soup.error().message.find(word), std::string::npos)
-            << word << " is not in: " << soup.error().message;
-}
-
-template <class T> void put(std::string& bytes, T value, bool big_endian = false)
-{
-    char raw[sizeof(T)];
-    std::memcpy(raw, &value, sizeof(T));
-    if (big_endian)
-        std::reverse(raw, raw + sizeof(T));
-    bytes.append(raw, sizeof(T));
+    expect_error_of(read(name, bytes), name, bytes, code, words);
 }
 
 std::string binary_stl(const std::vector<std::array<Vec3, 3>>& facets, const std::string& header,

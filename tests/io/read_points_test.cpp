@@ -2,7 +2,7 @@
 #include "bot2nurbs/read_points.h"
 
 #include "io/lzf.h"
-#include "scratch_file.h"
+#include "read_fixtures.h"
 
 #include <gtest/gtest.h>
 
@@ -14,6 +14,8 @@
 #include <random>
 
 using namespace bot2nurbs;
+using bot2nurbs::test::expect_error_of;
+using bot2nurbs::test::put;
 using bot2nurbs::test::ScratchFile;
 
 namespace {
@@ -35,23 +37,7 @@ PointCloud must_read(const std::string& name, const std::string& bytes)
 void expect_error(const std::string& name, const std::string& bytes, ErrorCode code,
                   const std::vector<std::string>& words)
 {
-    SCOPED_TRACE(name + ": " + bytes.substr(0, 60));
-    const Result<PointCloud> cloud = read(name, bytes);
-    ASSERT_FALSE(cloud);
-    EXPECT_EQ(cloud.error().code, code);
-    EXPECT_NE(cloud.error().message.find(name), std::string::npos);
-    for (const std::string& word : words)
-        EXPECT_NE(cloud.error().message.find(word), std::string::npos)
-            << word << " is not in: " << cloud.error().message;
-}
-
-template <class T> void put(std::string& bytes, T value, bool big_endian = false)
-{
-    char raw[sizeof(T)];
-    std::memcpy(raw, &value, sizeof(T));
-    if (big_endian)
-        std::reverse(raw, raw + sizeof(T));
-    bytes.append(raw, sizeof(T));
+    expect_error_of(read(name, bytes), name, bytes, code, words);
 }
 
 // The cloud that every format below stores: four points, unit normals, colours.
