@@ -7,7 +7,12 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <limits>
 #include <new>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace bot2nurbs::cli {
 
@@ -35,6 +40,16 @@ void cancel_on_signals(Context& context)
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+}
+
+//! Large arrays come and go from stage to stage. Given back to the system each time, their pages
+//! would have to be cleared and mapped again: a fifth of the time on a million triangles.
+void keep_memory()
+{
+#ifdef __GLIBC__
+    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+#endif
 }
 
 int fail(const Error& error, Terminal& terminal)
@@ -154,5 +169,6 @@ int main(int argc, char** argv)
     const std::variant<Command, int> command = parse_command(argc, argv);
     if (const int* code = std::get_if<int>(&command))
         return *code;
+    keep_memory();
     return run(std::get<Command>(command));
 }

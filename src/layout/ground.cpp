@@ -55,12 +55,12 @@ struct Measured {
 };
 
 Measured measure(const ManifoldMesh& mesh, const std::vector<char>& marks,
-                 const std::vector<char>& corner, double smoothing)
+                 const std::vector<char>& corner, double smoothing, const Context& context)
 {
     Measured result;
     result.cut = std::make_unique<CutMesh>(mesh, marks);
     const ManifoldMesh& cut = result.cut->mesh();
-    SizeField field = measure_size_field(cut, smoothing);
+    SizeField field = measure_size_field(cut, smoothing, context);
     result.bending = field.bending;
     std::vector<Index> name(cut.vertex_count());
     for (Index v = 0; v < cut.vertex_count(); ++v)
@@ -80,7 +80,7 @@ int euler_characteristic(const ManifoldMesh& mesh)
 }
 
 Result<Ground> prepare_ground(const ManifoldMesh& source, const LayoutOptions& options,
-                              LayoutSummary& summary)
+                              LayoutSummary& summary, const Context& context)
 {
     const DomainConstraints& wanted = options.constraints;
     if (Status failed = check_constrained_paths(wanted, source))
@@ -101,7 +101,7 @@ Result<Ground> prepare_ground(const ManifoldMesh& source, const LayoutOptions& o
     ground.marks = mark_edges(source, edges);
 
     const double smoothing = curvature_scale * source.box().diagonal();
-    Measured on_source = measure(source, ground.marks, ground.corner, smoothing);
+    Measured on_source = measure(source, ground.marks, ground.corner, smoothing, context);
     const double handles = 0.5 * (2 - euler_characteristic(source));
     const std::optional<Index> asked = options.patches ? options.patches : wanted.patches;
     const double by_bending = asked ? *asked : default_patches(on_source.bending, handles);
@@ -148,7 +148,7 @@ Result<Ground> prepare_ground(const ManifoldMesh& source, const LayoutOptions& o
     std::vector<char> node = ground.corner;
     for (const Index s : ground.constraints.sites)
         node[s] = 1;
-    Measured on_carrier = measure(mesh, ground.marks, node, smoothing);
+    Measured on_carrier = measure(mesh, ground.marks, node, smoothing, context);
     on_carrier.level->refine_at_curves(unit);
     on_carrier.level->required = ground.constraints.sites;
     for (const auto& pair : ground.constraints.apart)

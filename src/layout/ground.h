@@ -26,7 +26,7 @@ struct Ground {
 //! source that are too long for them, and cuts it open. Cost O(n log n). Errors:
 //! constraint_conflict.
 Result<Ground> prepare_ground(const ManifoldMesh& source, const LayoutOptions& options,
-                              LayoutSummary& summary);
+                              LayoutSummary& summary, const Context& context);
 
 //! V - E + F.
 int euler_characteristic(const ManifoldMesh& mesh);

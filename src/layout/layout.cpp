@@ -245,7 +245,7 @@ Result<LayoutResult> build_layout(const ManifoldMesh& source, const LayoutOption
                      invalid_index};
     LayoutResult result;
     LayoutSummary& summary = result.summary;
-    Result<Ground> ground = prepare_ground(source, options, summary);
+    Result<Ground> ground = prepare_ground(source, options, summary, context);
     if (!ground)
         return ground.error();
     if (context.cancelled())

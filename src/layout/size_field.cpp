@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "layout/size_field.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -15,21 +17,53 @@ constexpr double max_density = 1.8;
 // More smoothing rounds than this on very dense meshes would cost more than the layout.
 constexpr int max_rounds = 60;
 
-// One round of averaging over neighbours, weighted by area.
-template <class T>
-void smooth(const ManifoldMesh& mesh, const std::vector<double>& area, std::vector<T>& value)
-{
-    std::vector<T> sum(value.size());
-    std::vector<double> weight(value.size(), 0.0);
-    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-        const Index a = mesh.from(h), b = mesh.to(h);
-        sum[a] = sum[a] + area[b] * value[b];
-        weight[a] += area[b];
+// The neighbours of every vertex, in one array.
+class Rings {
+public:
+    explicit Rings(const ManifoldMesh& mesh) : offset_(mesh.vertex_count() + 1, 0)
+    {
+        for (Index h = 0; h < mesh.halfedge_count(); ++h)
+            ++offset_[mesh.from(h) + 1];
+        for (std::size_t v = 1; v < offset_.size(); ++v)
+            offset_[v] += offset_[v - 1];
+        neighbour_.resize(mesh.halfedge_count());
+        std::vector<Index> next(offset_.begin(), offset_.end() - 1);
+        for (Index h = 0; h < mesh.halfedge_count(); ++h)
+            neighbour_[next[mesh.from(h)]++] = mesh.to(h);
     }
-    for (Index v = 0; v < value.size(); ++v)
-        if (weight[v] > 0.0)
-            value[v] = 0.5 * value[v] + (0.5 / weight[v]) * sum[v];
-}
+
+    // So many rounds of averaging over neighbours, weighted by area.
+    template <class T> void smooth(const std::vector<double>& area, int rounds,
+                                   const Context& context, std::vector<T>& value) const
+    {
+        std::vector<T> last;
+        for (int r = 0; r < rounds; ++r) {
+            last = value;
+            for_each_chunk(context, value.size(), chunk_vertices,
+                           [&](std::size_t begin, std::size_t end) {
+                               for (std::size_t v = begin; v < end; ++v)
+                                   value[v] = averaged(static_cast<Index>(v), area, last);
+                           });
+        }
+    }
+
+private:
+    static constexpr std::size_t chunk_vertices = 16384;
+
+    template <class T>
+    T averaged(Index v, const std::vector<double>& area, const std::vector<T>& value) const
+    {
+        T sum{};
+        double weight = 0.0;
+        for (Index i = offset_[v]; i < offset_[v + 1]; ++i) {
+            sum = sum + area[neighbour_[i]] * value[neighbour_[i]];
+            weight += area[neighbour_[i]];
+        }
+        return weight > 0.0 ? 0.5 * value[v] + (0.5 / weight) * sum : value[v];
+    }
+
+    std::vector<Index> offset_, neighbour_;
+};
 
 } // namespace
 
@@ -44,7 +78,7 @@ double scaled_area(const ManifoldMesh& mesh, const std::vector<double>& density)
     return area;
 }
 
-SizeField measure_size_field(const ManifoldMesh& mesh, double smoothing)
+SizeField measure_size_field(const ManifoldMesh& mesh, double smoothing, const Context& context)
 {
     const Index n = mesh.vertex_count();
     std::vector<Vec3> normal(n);
@@ -64,8 +98,8 @@ SizeField measure_size_field(const ManifoldMesh& mesh, double smoothing)
     const double ratio = edge > 0.0 ? smoothing / edge : 0.0;
     const int rounds =
         static_cast<int>(std::min<double>(max_rounds, std::ceil(2.0 * ratio * ratio)));
-    for (int r = 0; r < rounds; ++r)
-        smooth(mesh, area, normal);
+    const Rings rings(mesh);
+    rings.smooth(area, rounds, context, normal);
     for (Vec3& v : normal)
         v = normalized(v);
 
@@ -93,8 +127,7 @@ SizeField measure_size_field(const ManifoldMesh& mesh, double smoothing)
     }
     for (Index v = 0; v < n; ++v)
         squared[v] = area[v] > 0.0 ? squared[v] / area[v] : 0.0;
-    for (int r = 0; r < rounds; ++r)
-        smooth(mesh, area, squared);
+    rings.smooth(area, rounds, context, squared);
 
     double total = 0.0, mean = 0.0;
     for (Index v = 0; v < n; ++v) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "bot2nurbs/context.h"
 #include "bot2nurbs/manifold_mesh.h"
 
 #include <vector>
@@ -19,7 +20,7 @@ struct SizeField {
 double scaled_area(const ManifoldMesh& mesh, const std::vector<double>& density);
 
 //! Curvature from vertex normals, smoothed over the length `smoothing` so that it follows the shape
-//! and not the noise of its sampling. Cost O(n).
-SizeField measure_size_field(const ManifoldMesh& mesh, double smoothing);
+//! and not the noise of its sampling. Of no use when cancelled. Cost O(n).
+SizeField measure_size_field(const ManifoldMesh& mesh, double smoothing, const Context& context);
 
 } // namespace bot2nurbs

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/box_tree.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace bot2nurbs {
 
@@ -14,6 +17,8 @@ constexpr int bin_count = 16;
 // Deeper nodes are halved by number, so that the depth stays below this plus log2 of the items
 // whatever the boxes: queries keep their stack in an array.
 constexpr int surface_area_depth = 28;
+// Subtrees of about this size are made side by side.
+constexpr Index subtree_items = 8192;
 
 double half_area(const Box3& b)
 {
@@ -100,78 +105,144 @@ Split find_split(const Item* first, const Item* last, const Box3& centers)
     return best < INFINITY ? split : Split{};
 }
 
+//! A node to be made of a range of items.
+struct Task {
+    Index node, first, count;
+    int depth;
+    Bounds bounds;
+};
+
+//! Makes nodes from the top down. Ranges of items do not overlap, so that subtrees may be made side
+//! by side.
+class Builder {
+public:
+    explicit Builder(const std::vector<Box3>& boxes)
+        : items_(boxes.size()), moved_(boxes.size()), order_(boxes.size())
+    {
+        for (Index i = 0; i < boxes.size(); ++i)
+            items_[i] = {boxes[i], i};
+    }
+
+    Task root() const
+    {
+        Task task{0, 0, static_cast<Index>(items_.size()), 0, {}};
+        for (const Item& item : items_)
+            task.bounds.add(item);
+        return task;
+    }
+
+    //! Makes the subtree of a task; its node must be there. Tasks of at most `set_aside` items are
+    //! left to `rest`, if there is one.
+    void run(const Task& first, std::vector<BoxTree::Node>& nodes, const Context* context,
+             Index set_aside = 0, std::vector<Task>* rest = nullptr)
+    {
+        std::vector<Task> tasks{first};
+        while (!tasks.empty()) {
+            if (context && context->cancelled())
+                return;
+            const Task task = tasks.back();
+            tasks.pop_back();
+            if (rest && task.count <= set_aside) {
+                rest->push_back(task);
+                continue;
+            }
+            nodes[task.node].min = task.bounds.items.min;
+            nodes[task.node].max = task.bounds.items.max;
+            if (task.count <= leaf_items) {
+                // Partitions are stable, so items of a leaf are in the order of their numbers.
+                for (Index i = 0; i < task.count; ++i)
+                    order_[task.first + i] = items_[task.first + i].number;
+                nodes[task.node].first = task.first;
+                nodes[task.node].count = task.count;
+                continue;
+            }
+            Bounds left_bounds, right_bounds;
+            const Index left = divide(task, left_bounds, right_bounds);
+            const Index child = static_cast<Index>(nodes.size());
+            nodes[task.node].first = child;
+            nodes[task.node].count = 0;
+            nodes.emplace_back();
+            nodes.emplace_back();
+            tasks.push_back(
+                {child + 1, task.first + left, task.count - left, task.depth + 1, right_bounds});
+            tasks.push_back({child, task.first, left, task.depth + 1, left_bounds});
+        }
+    }
+
+    std::vector<Index> take_order() { return std::move(order_); }
+
+private:
+    //! Puts the items of the first child in front. \return how many they are.
+    Index divide(const Task& task, Bounds& left_bounds, Bounds& right_bounds)
+    {
+        Item* const first = items_.data() + task.first;
+        Item* const last = first + task.count;
+        Item* const moved = moved_.data() + task.first;
+        const Split split = task.depth < surface_area_depth
+                                ? find_split(first, last, task.bounds.centers)
+                                : Split{};
+        if (split.axis < 0) {
+            const Index left = task.count / 2;
+            for (Index i = 0; i < task.count; ++i)
+                (i < left ? left_bounds : right_bounds).add(first[i]);
+            return left;
+        }
+        Index kept = 0, gone = 0;
+        for (const Item* i = first; i != last; ++i) {
+            if (split.bin_of(i->box) < split.bin) {
+                left_bounds.add(*i);
+                first[kept++] = *i;
+            } else {
+                right_bounds.add(*i);
+                moved[gone++] = *i;
+            }
+        }
+        std::copy(moved, moved + gone, first + kept);
+        return kept;
+    }
+
+    std::vector<Item> items_, moved_;
+    std::vector<Index> order_;
+};
+
 } // namespace
 
 BoxTree::BoxTree(const std::vector<Box3>& boxes, const Context* context)
 {
-    const Index n = static_cast<Index>(boxes.size());
-    if (n == 0)
+    if (boxes.empty())
         return;
-    struct Task {
-        Index node, first, count;
-        int depth;
-        Bounds bounds;
-    };
-    Task root{0, 0, n, 0, {}};
-    std::vector<Item> items(n), moved(n);
-    for (Index i = 0; i < n; ++i) {
-        items[i] = {boxes[i], i};
-        root.bounds.add(items[i]);
-    }
-    items_.resize(n);
-    nodes_.reserve(n);
+    Builder builder(boxes);
+    nodes_.reserve(boxes.size());
     nodes_.emplace_back();
-    std::vector<Task> tasks{root};
-    while (!tasks.empty()) {
-        if (context && context->cancelled()) {
-            *this = {};
-            return;
+    std::vector<Task> subtrees;
+    builder.run(builder.root(), nodes_, context, subtree_items, &subtrees);
+    std::vector<std::vector<Node>> made(subtrees.size());
+    const auto make = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Task task = subtrees[i];
+            task.node = 0;
+            made[i].reserve(task.count);
+            made[i].emplace_back();
+            builder.run(task, made[i], context);
         }
-        const Task task = tasks.back();
-        tasks.pop_back();
-        Item* const first = items.data() + task.first;
-        Item* const last = first + task.count;
-        nodes_[task.node].min = task.bounds.items.min;
-        nodes_[task.node].max = task.bounds.items.max;
-        if (task.count <= leaf_items) {
-            // Partitions are stable, so items of a leaf are in the order of their numbers.
-            for (Index i = 0; i < task.count; ++i)
-                items_[task.first + i] = first[i].number;
-            nodes_[task.node].first = task.first;
-            nodes_[task.node].count = task.count;
-            continue;
-        }
-        Bounds left_bounds, right_bounds;
-        Index left = task.count / 2;
-        const Split split = task.depth < surface_area_depth
-                                ? find_split(first, last, task.bounds.centers)
-                                : Split{};
-        if (split.axis >= 0) {
-            Index kept = 0, gone = 0;
-            for (const Item* i = first; i != last; ++i) {
-                if (split.bin_of(i->box) < split.bin) {
-                    left_bounds.add(*i);
-                    first[kept++] = *i;
-                } else {
-                    right_bounds.add(*i);
-                    moved[gone++] = *i;
-                }
-            }
-            std::copy(moved.begin(), moved.begin() + gone, first + kept);
-            left = kept;
-        } else {
-            for (Index i = 0; i < task.count; ++i)
-                (i < left ? left_bounds : right_bounds).add(first[i]);
-        }
-        const Index child = static_cast<Index>(nodes_.size());
-        nodes_[task.node].first = child;
-        nodes_[task.node].count = 0;
-        nodes_.emplace_back();
-        nodes_.emplace_back();
-        tasks.push_back(
-            {child + 1, task.first + left, task.count - left, task.depth + 1, right_bounds});
-        tasks.push_back({child, task.first, left, task.depth + 1, left_bounds});
+    };
+    if (!context)
+        make(0, subtrees.size());
+    else if (!for_each_chunk(*context, subtrees.size(), 1, make)) {
+        *this = {};
+        return;
     }
+    for (std::size_t i = 0; i < subtrees.size(); ++i) {
+        // The root of the subtree has its place already.
+        const Index before = static_cast<Index>(nodes_.size()) - 1;
+        for (Node& node : made[i])
+            if (node.count == 0)
+                node.first += before;
+        nodes_[subtrees[i].node] = made[i][0];
+        nodes_.insert(nodes_.end(), made[i].begin() + 1, made[i].end());
+        made[i] = {};
+    }
+    items_ = builder.take_order();
 }
 
 } // namespace bot2nurbs

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bot2nurbs/closest_point.h"
 
+#include "core/parallel.h"
 #include "mesh/box_tree.h"
 #include "mesh/closest_on_triangle.h"
 
@@ -16,6 +17,7 @@ constexpr double prune_slack = 1.0 + 1e-12;
 
 // Bound of the stack of open nodes: 28 levels by area, then halving of at most 2^32 items.
 constexpr int stack_size = 64;
+constexpr std::size_t chunk_triangles = 16384;
 
 struct Triangle : TriangleCorners {
     Index face = invalid_index;
@@ -59,17 +61,25 @@ ClosestPoint::ClosestPoint(const std::vector<Vec3>& positions,
                            const std::vector<std::array<Index, 3>>& triangles,
                            const Context* context)
 {
+    Context alone;
+    alone.threads = 1;
+    const Context& how = context ? *context : alone;
     std::vector<Box3> boxes(triangles.size());
-    for (std::size_t f = 0; f < triangles.size(); ++f)
-        for (const Index v : triangles[f])
-            boxes[f].add(positions[v]);
+    for_each_chunk(how, triangles.size(), chunk_triangles, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f)
+            for (const Index v : triangles[f])
+                boxes[f].add(positions[v]);
+    });
     auto tree = std::make_shared<Tree>();
     tree->boxes = BoxTree(boxes, context);
-    tree->triangles.reserve(triangles.size());
-    for (const Index f : tree->boxes.items()) {
-        const auto& t = triangles[f];
-        tree->triangles.push_back({{positions[t[0]], positions[t[1]], positions[t[2]]}, f});
-    }
+    const std::vector<Index>& items = tree->boxes.items();
+    tree->triangles.resize(items.size());
+    for_each_chunk(how, items.size(), chunk_triangles, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto& t = triangles[items[i]];
+            tree->triangles[i] = {{positions[t[0]], positions[t[1]], positions[t[2]]}, items[i]};
+        }
+    });
     tree_ = std::move(tree);
 }
 

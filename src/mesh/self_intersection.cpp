@@ -24,6 +24,7 @@ constexpr std::uint64_t least_candidates = 4000000;
 constexpr std::uint64_t task_candidates = 1024000;
 
 constexpr int stack_size = 128;
+constexpr std::size_t chunk_faces = 16384;
 
 using Triangle = std::array<Vec3, 3>;
 
@@ -159,10 +160,14 @@ SelfIntersections find_self_intersections(const std::vector<Vec3>& positions,
 {
     const Index faces = static_cast<Index>(triangles.size());
     std::vector<Box3> boxes(faces);
-    for (Index f = 0; f < faces; ++f)
-        for (const Index v : triangles[f])
-            boxes[f].add(positions[v]);
-    const BoxTree tree(boxes);
+    for_each_chunk(context, faces, chunk_faces, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f)
+            for (const Index v : triangles[f])
+                boxes[f].add(positions[v]);
+    });
+    const BoxTree tree(boxes, &context);
+    if (context.cancelled())
+        return {};
     const std::vector<BoxTree::Node>& nodes = tree.nodes();
     std::vector<Index> leaves; // In the order of items.
     for (Index n = 0; n < nodes.size(); ++n)
@@ -172,11 +177,13 @@ SelfIntersections find_self_intersections(const std::vector<Vec3>& positions,
               [&](Index a, Index b) { return nodes[a].first < nodes[b].first; });
     // Boxes and corners in the order of the leaves: what is compared lies close in memory.
     std::vector<Item> items(faces);
-    for (Index i = 0; i < faces; ++i) {
-        const Index f = tree.items()[i];
-        const auto& t = triangles[f];
-        items[i] = {boxes[f], {positions[t[0]], positions[t[1]], positions[t[2]]}, f};
-    }
+    for_each_chunk(context, faces, chunk_faces, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Index f = tree.items()[i];
+            const auto& t = triangles[f];
+            items[i] = {boxes[f], {positions[t[0]], positions[t[1]], positions[t[2]]}, f};
+        }
+    });
     boxes = {};
     struct Task {
         std::uint64_t count = 0, candidates = 0;

@@ -12,7 +12,7 @@ namespace {
 
 double bending(const ManifoldMesh& mesh)
 {
-    return measure_size_field(mesh, 0.015 * mesh.box().diagonal()).bending;
+    return measure_size_field(mesh, 0.015 * mesh.box().diagonal(), Context()).bending;
 }
 
 TEST(SizeField, bending_of_a_sphere_is_eight_pi_at_any_scale)
@@ -34,12 +34,12 @@ TEST(SizeField, bending_of_a_torus_is_its_integral)
 
 TEST(SizeField, density_is_even_on_a_sphere_and_higher_where_an_ellipsoid_bends_more)
 {
-    for (const double d : measure_size_field(icosphere(3), 0.05).density)
+    for (const double d : measure_size_field(icosphere(3), 0.05, Context()).density)
         EXPECT_NEAR(d, 1.0, 0.05);
     const ManifoldMesh egg = moved(icosphere(4), [](const Vec3& p) {
         return Vec3{p.x, p.y, 3.0 * p.z};
     });
-    const auto density = measure_size_field(egg, 0.05).density;
+    const auto density = measure_size_field(egg, 0.05, Context()).density;
     for (Index v = 0; v < egg.vertex_count(); ++v) {
         EXPECT_TRUE(std::isfinite(density[v]));
         if (std::fabs(egg.position(v).z) > 2.9) {
@@ -53,7 +53,7 @@ TEST(SizeField, is_finite_on_faces_without_area)
     const ManifoldMesh flat = moved(icosphere(2), [](const Vec3& p) {
         return Vec3{p.x, 0.0, 0.0};
     });
-    for (const double d : measure_size_field(flat, 0.05).density)
+    for (const double d : measure_size_field(flat, 0.05, Context()).density)
         EXPECT_TRUE(std::isfinite(d) && d > 0.0);
 }
 
