@@ -56,7 +56,7 @@ HausdorffSearch::HausdorffSearch(const ManifoldMesh& source, const QuadComplex& 
       tie_(subject_.to_unit(tie_share * source.box().diagonal())), max_cells_(options.max_cells)
 {
     if (options.decide)
-        decide_ = subject_.to_unit(*options.decide);
+        decide_ = subject_.to_unit(*options.decide) - tie_; // What is closed is within it, then.
     if (max_cells_ == 0)
         max_cells_ = cells_at_least + cells_per_element * (std::uint64_t{subject_.piece_count()} +
                                                            source.face_count());
