@@ -1,13 +1,15 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Makes the models of examples/: closed smooth surfaces of implicit functions.
+"""Makes the models of examples/: closed smooth surfaces of implicit functions, and parts with edges.
 
     scripts/make_examples.py [FOLDER]
 
 Needs numpy (Debian: python3-numpy). Deterministic. Each model is the zero set of a function that
 is negative inside, meshed as a surface net on a grid (one vertex a cell that the surface crosses,
 one quad a grid edge), then relaxed along the surface and put back onto it by Newton's method.
-Every mesh is checked before it is written: closed, two-manifold, outward, of the genus it names.
+Every such mesh is checked before it is written: closed, two-manifold, outward, of the genus it
+names. The parts are an arch, swept along an axis from a grid between two curves, and the same
+without its front, which is open.
 """
 
 import struct
@@ -192,6 +194,54 @@ def mesh_of(f, low, high, cell):
     return vertices, np.concatenate([q[:, [0, 1, 2]], q[:, [0, 2, 3]]])
 
 
+# --- parts with edges -----------------------------------------------------------------------------
+
+
+def arch(front=True, around=48, across=6, along=10):
+    """A block of 60 x 30 x 40 with a vault of radius 15 and two rounded shoulders."""
+    t = np.linspace(np.pi, 0.0, around + 1)
+    inner = np.stack([15 * np.cos(t), 15 * np.sin(t)], axis=-1)
+    shoulder = np.linspace(0.0, 0.5 * np.pi, around // 6 + 1)[1:]
+    left = np.stack([np.full(around // 6, -30.0), np.linspace(0, 28, around // 6, endpoint=False)], -1)
+    round_left = np.stack([-18 - 12 * np.cos(shoulder), 28 + 12 * np.sin(shoulder)], axis=-1)
+    start = np.array([[-30.0, 28.0]])
+    half = np.concatenate([left, start, round_left])
+    count = around // 2 + 1 - len(half)
+    top = np.stack([np.linspace(-18, 0, count + 1)[1:], np.full(count, 40.0)], axis=-1)
+    half = np.concatenate([half, top])
+    outer = np.concatenate([half, half[-2::-1] * (-1, 1)])
+    number, vertices, triangles = {}, [], []
+
+    def at(i, r, y):
+        if (i, r, y) not in number:
+            number[i, r, y] = len(vertices)
+            p = inner[i] + r / across * (outer[i] - inner[i])
+            vertices.append((p[0], 30.0 * y / along, p[1]))
+        return number[i, r, y]
+
+    def quad(a, b, c, d):
+        triangles.extend([(a, b, c), (a, c, d)])
+
+    for i in range(around):
+        for r in range(across):
+            if front:
+                quad(at(i, r, 0), at(i + 1, r, 0), at(i + 1, r + 1, 0), at(i, r + 1, 0))
+            quad(at(i, r, along), at(i, r + 1, along), at(i + 1, r + 1, along), at(i + 1, r, along))
+        for y in range(along):
+            quad(at(i, 0, y), at(i, 0, y + 1), at(i + 1, 0, y + 1), at(i + 1, 0, y))
+            quad(at(i, across, y), at(i + 1, across, y), at(i + 1, across, y + 1), at(i, across, y + 1))
+    for i in (0, around):
+        for r in range(across):
+            for y in range(along):
+                foot = [at(i, r, y), at(i, r + 1, y), at(i, r + 1, y + 1), at(i, r, y + 1)]
+                quad(*(foot if i == 0 else foot[::-1]))
+    vertices, triangles = np.array(vertices), np.array(triangles)
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    if np.einsum("ij,ij->", a, np.cross(b, c)) < 0.0:
+        triangles = triangles[:, ::-1]
+    return vertices, triangles
+
+
 # --- checks ---------------------------------------------------------------------------------------
 
 
@@ -293,6 +343,8 @@ def main():
         vertices, triangles = mesh_of(f, low, high, cell)
         check(name, vertices, triangles, genus)
         write(folder / name, vertices, triangles)
+    write_obj(folder / "arch.obj", *arch())
+    write_obj(folder / "hood.obj", *arch(front=False))
 
 
 if __name__ == "__main__":

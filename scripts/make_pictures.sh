@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Draws the pictures of docs/images. Needs what scripts/install_dependencies.sh --render installs.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+for model in bracket.ply arch.obj hood.obj; do
+    scripts/render.py "examples/$model" "$work/${model%.*}" > "$work/log" 2>&1
+done
+cp "$work/bracket-layout.png" docs/images/bracket.png
+cp "$work/bracket-zebra.png" "$work/bracket-error.png" "$work/arch-zebra.png" docs/images
+cp "$work/hood-layout.png" docs/images/hood.png
