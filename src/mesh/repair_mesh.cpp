@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bot2nurbs/repair_mesh.h"
 
+#include "mesh/count_of.h"
 #include "mesh/degenerate_faces.h"
 #include "mesh/soup_topology.h"
 #include "mesh/split_nonmanifold.h"
@@ -15,11 +16,6 @@ namespace {
 
 // Welding over larger distances would destroy any model.
 constexpr double largest_weld = 0.1;
-
-std::string count_of(Index n, const char* one, const char* many)
-{
-    return std::to_string(n) + " " + (n == 1 ? one : many);
-}
 
 class Repairer {
 public:

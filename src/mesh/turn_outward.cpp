@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/turn_outward.h"
 
+#include "mesh/count_of.h"
 #include "mesh/nesting.h"
 
 #include <algorithm>
@@ -35,11 +36,6 @@ void renew(std::vector<RepairNote>& notes, RepairNote note)
                 notes.end());
     if (note.count > 0)
         notes.push_back(std::move(note));
-}
-
-std::string count_of(Index n, const char* one, const char* many)
-{
-    return std::to_string(n) + " " + (n == 1 ? one : many);
 }
 
 } // namespace
