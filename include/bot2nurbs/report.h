@@ -77,7 +77,7 @@ struct ComponentOutcome {
     int genus = 0;
     Index boundary_loops = 0;
     double source_volume = 0.0; //!< Of the mesh, after repair; 0 when open.
-    double diagonal = 0.0; //!< Of the component's box, in units of the input.
+    double diagonal = 0.0;      //!< Of the component's box, in units of the input.
 
     FeatureReport features;
     DomainReport domain;

@@ -147,7 +147,9 @@ Result<Index> fill(MeshComponent& component, double size, std::vector<RepairNote
             continue;
         }
         const std::size_t before = triangles.size();
-        if (loop.size() > most_edges || !LeastArea(mesh, loop).solve(triangles))
+        // A triangle that is a component of its own would be filled by itself.
+        if (mesh.face_count() == 1 || loop.size() > most_edges ||
+            !LeastArea(mesh, loop).solve(triangles))
             add_fan(loop, positions, triangles);
         notes.push_back({"hole_filled",
                          "the hole at vertex " + std::to_string(first_vertex(component, loop)) +

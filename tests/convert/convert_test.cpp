@@ -302,6 +302,53 @@ TEST_F(ConvertTest, without_repair_an_input_that_needs_some_is_refused)
     EXPECT_EQ(refused->rejection->code, ErrorCode::bad_geometry);
 }
 
+TEST_F(ConvertTest, triangles_that_do_not_meet_are_refused_by_name_and_welded_on_request)
+{
+    // Every face of a sphere with corners of its own, each moved by up to 1e-6.
+    const ManifoldMesh sphere = sphere_cube(0, 8).mesh;
+    std::string text = fmt::format("OFF\n{} {} 0\n", 3 * sphere.face_count(), sphere.face_count());
+    for (Index f = 0; f < sphere.face_count(); ++f)
+        for (Index k = 0; k < 3; ++k) {
+            const Vec3& p = sphere.position(sphere.triangle(f)[k]);
+            const double shift = 1e-6 * ((7 * f + 3 * k) % 11) / 11.0;
+            text += fmt::format("{:.17g} {:.17g} {:.17g}\n", p.x + shift, p.y - shift, p.z);
+        }
+    for (Index f = 0; f < sphere.face_count(); ++f)
+        text += fmt::format("3 {} {} {}\n", 3 * f, 3 * f + 1, 3 * f + 2);
+    write_file(path("mesh.off"), text);
+    ConvertOptions options;
+    options.input = path("mesh.off");
+    Context context;
+    const Result<InputReport> loose = check_input(options, context);
+    ASSERT_TRUE(loose && loose->rejection);
+    EXPECT_EQ(loose->rejection->code, ErrorCode::bad_geometry);
+    EXPECT_NE(loose->rejection->message.find("--weld"), std::string::npos);
+    for (const Length weld : {Length{1e-5, false}, Length{3e-6, true}}) {
+        options.weld = weld;
+        const Result<InputReport> welded = check_input(options, context);
+        ASSERT_TRUE(welded);
+        EXPECT_FALSE(welded->rejection) << welded->rejection->message;
+        EXPECT_FALSE(welded->repairs.empty());
+    }
+    options.weld = Length{0.2, true};
+    const Result<InputReport> all = check_input(options, context);
+    ASSERT_TRUE(all && all->rejection); // Nothing would be left.
+    EXPECT_EQ(all->rejection->code, ErrorCode::bad_option);
+}
+
+TEST_F(ConvertTest, a_flat_mesh_that_is_closed_by_filling_is_refused)
+{
+    write_file(path("mesh.off"), "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    ConvertOptions options;
+    options.input = path("mesh.off");
+    options.fill_holes = Length{1.0, true};
+    Context context;
+    const Result<InputReport> report = check_input(options, context);
+    ASSERT_TRUE(report && report->rejection);
+    EXPECT_EQ(report->rejection->code, ErrorCode::bad_geometry);
+    EXPECT_NE(report->rejection->message.find("no volume"), std::string::npos);
+}
+
 TEST_F(ConvertTest, a_cancelled_conversion_writes_nothing_whenever_it_is_cancelled)
 {
     ConvertOptions options = options_for({sphere_cube(1, 16)});
