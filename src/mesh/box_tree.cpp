@@ -17,8 +17,8 @@ constexpr int bin_count = 16;
 // Deeper nodes are halved by number, so that the depth stays below this plus log2 of the items
 // whatever the boxes: queries keep their stack in an array.
 constexpr int surface_area_depth = 28;
-// Subtrees of about this size are made side by side.
-constexpr Index subtree_items = 8192;
+// Larger subtrees are made in two halves, side by side.
+constexpr Index serial_items = 8192;
 
 double half_area(const Box3& b)
 {
@@ -105,9 +105,9 @@ Split find_split(const Item* first, const Item* last, const Box3& centers)
     return best < INFINITY ? split : Split{};
 }
 
-//! A node to be made of a range of items.
+//! A range of items that becomes a node.
 struct Task {
-    Index node, first, count;
+    Index first, count;
     int depth;
     Bounds bounds;
 };
@@ -125,55 +125,80 @@ public:
 
     Task root() const
     {
-        Task task{0, 0, static_cast<Index>(items_.size()), 0, {}};
+        Task task{0, static_cast<Index>(items_.size()), 0, {}};
         for (const Item& item : items_)
             task.bounds.add(item);
         return task;
     }
 
-    //! Makes the subtree of a task; its node must be there. Tasks of at most `set_aside` items are
-    //! left to `rest`, if there is one.
-    void run(const Task& first, std::vector<BoxTree::Node>& nodes, const Context* context,
-             Index set_aside = 0, std::vector<Task>* rest = nullptr)
+    //! The nodes of the subtree of a task, its root first. Large ones are made in two halves, side
+    //! by side if there is a context; their nodes come in the same order in any case.
+    std::vector<BoxTree::Node> subtree(const Task& task, const Context* context)
     {
-        std::vector<Task> tasks{first};
-        while (!tasks.empty()) {
-            if (context && context->cancelled())
-                return;
-            const Task task = tasks.back();
-            tasks.pop_back();
-            if (rest && task.count <= set_aside) {
-                rest->push_back(task);
-                continue;
-            }
-            nodes[task.node].min = task.bounds.items.min;
-            nodes[task.node].max = task.bounds.items.max;
-            if (task.count <= leaf_items) {
-                // Partitions are stable, so items of a leaf are in the order of their numbers.
-                for (Index i = 0; i < task.count; ++i)
-                    order_[task.first + i] = items_[task.first + i].number;
-                nodes[task.node].first = task.first;
-                nodes[task.node].count = task.count;
-                continue;
-            }
-            Bounds left_bounds, right_bounds;
-            const Index left = divide(task, left_bounds, right_bounds);
-            const Index child = static_cast<Index>(nodes.size());
-            nodes[task.node].first = child;
-            nodes[task.node].count = 0;
-            nodes.emplace_back();
-            nodes.emplace_back();
-            tasks.push_back(
-                {child + 1, task.first + left, task.count - left, task.depth + 1, right_bounds});
-            tasks.push_back({child, task.first, left, task.depth + 1, left_bounds});
+        if (context && context->cancelled())
+            return {};
+        if (task.count <= serial_items)
+            return small_subtree(task);
+        std::array<Task, 2> half = divide(task);
+        std::array<std::vector<BoxTree::Node>, 2> made;
+        const auto make = [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                made[i] = subtree(half[i], context);
+        };
+        if (context)
+            for_each_chunk(*context, 2, 1, make);
+        else
+            make(0, 2);
+        if (made[0].empty() || made[1].empty())
+            return {}; // cancelled
+        // The root, the roots of both halves, then the rest of one after the other.
+        std::vector<BoxTree::Node> nodes{inner_node(task, 1), made[0][0], made[1][0]};
+        nodes.reserve(1 + made[0].size() + made[1].size());
+        for (std::size_t i = 0; i < 2; ++i) {
+            const Index shift = static_cast<Index>(nodes.size()) - 1;
+            for (BoxTree::Node& node : made[i])
+                if (node.count == 0)
+                    node.first += shift;
+            nodes[1 + i] = made[i][0];
+            nodes.insert(nodes.end(), made[i].begin() + 1, made[i].end());
         }
+        return nodes;
     }
 
     std::vector<Index> take_order() { return std::move(order_); }
 
 private:
-    //! Puts the items of the first child in front. \return how many they are.
-    Index divide(const Task& task, Bounds& left_bounds, Bounds& right_bounds)
+    static BoxTree::Node inner_node(const Task& task, Index first_child)
+    {
+        return {task.bounds.items.min, task.bounds.items.max, first_child, 0};
+    }
+
+    std::vector<BoxTree::Node> small_subtree(const Task& root)
+    {
+        std::vector<BoxTree::Node> nodes(1);
+        std::vector<std::pair<Task, Index>> open{{root, 0}}; // With the numbers of their nodes.
+        while (!open.empty()) {
+            const auto [task, at] = open.back();
+            open.pop_back();
+            if (task.count <= leaf_items) {
+                // Partitions are stable, so items of a leaf are in the order of their numbers.
+                for (Index i = 0; i < task.count; ++i)
+                    order_[task.first + i] = items_[task.first + i].number;
+                nodes[at] = {task.bounds.items.min, task.bounds.items.max, task.first, task.count};
+                continue;
+            }
+            const Index child = static_cast<Index>(nodes.size());
+            nodes[at] = inner_node(task, child);
+            nodes.resize(nodes.size() + 2);
+            const std::array<Task, 2> half = divide(task);
+            open.push_back({half[1], child + 1});
+            open.push_back({half[0], child});
+        }
+        return nodes;
+    }
+
+    //! Puts the items of the first half in front.
+    std::array<Task, 2> divide(const Task& task)
     {
         Item* const first = items_.data() + task.first;
         Item* const last = first + task.count;
@@ -181,24 +206,27 @@ private:
         const Split split = task.depth < surface_area_depth
                                 ? find_split(first, last, task.bounds.centers)
                                 : Split{};
+        Bounds left, right;
+        Index kept = task.count / 2;
         if (split.axis < 0) {
-            const Index left = task.count / 2;
             for (Index i = 0; i < task.count; ++i)
-                (i < left ? left_bounds : right_bounds).add(first[i]);
-            return left;
-        }
-        Index kept = 0, gone = 0;
-        for (const Item* i = first; i != last; ++i) {
-            if (split.bin_of(i->box) < split.bin) {
-                left_bounds.add(*i);
-                first[kept++] = *i;
-            } else {
-                right_bounds.add(*i);
-                moved[gone++] = *i;
+                (i < kept ? left : right).add(first[i]);
+        } else {
+            kept = 0;
+            Index gone = 0;
+            for (const Item* i = first; i != last; ++i) {
+                if (split.bin_of(i->box) < split.bin) {
+                    left.add(*i);
+                    first[kept++] = *i;
+                } else {
+                    right.add(*i);
+                    moved[gone++] = *i;
+                }
             }
+            std::copy(moved, moved + gone, first + kept);
         }
-        std::copy(moved, moved + gone, first + kept);
-        return kept;
+        return {Task{task.first, kept, task.depth + 1, left},
+                Task{task.first + kept, task.count - kept, task.depth + 1, right}};
     }
 
     std::vector<Item> items_, moved_;
@@ -212,37 +240,9 @@ BoxTree::BoxTree(const std::vector<Box3>& boxes, const Context* context)
     if (boxes.empty())
         return;
     Builder builder(boxes);
-    nodes_.reserve(boxes.size());
-    nodes_.emplace_back();
-    std::vector<Task> subtrees;
-    builder.run(builder.root(), nodes_, context, subtree_items, &subtrees);
-    std::vector<std::vector<Node>> made(subtrees.size());
-    const auto make = [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            Task task = subtrees[i];
-            task.node = 0;
-            made[i].reserve(task.count);
-            made[i].emplace_back();
-            builder.run(task, made[i], context);
-        }
-    };
-    if (!context)
-        make(0, subtrees.size());
-    else if (!for_each_chunk(*context, subtrees.size(), 1, make)) {
-        *this = {};
-        return;
-    }
-    for (std::size_t i = 0; i < subtrees.size(); ++i) {
-        // The root of the subtree has its place already.
-        const Index before = static_cast<Index>(nodes_.size()) - 1;
-        for (Node& node : made[i])
-            if (node.count == 0)
-                node.first += before;
-        nodes_[subtrees[i].node] = made[i][0];
-        nodes_.insert(nodes_.end(), made[i].begin() + 1, made[i].end());
-        made[i] = {};
-    }
-    items_ = builder.take_order();
+    nodes_ = builder.subtree(builder.root(), context);
+    if (!nodes_.empty())
+        items_ = builder.take_order();
 }
 
 } // namespace bot2nurbs
