@@ -14,11 +14,13 @@ namespace bot2nurbs {
 
 namespace {
 
-//! Places measured per direction, for a Bezier piece and at most. A closest point costs one or two
-//! microseconds, so the whole stays under half a second on one core; two or three times as many
-//! changed root mean squares by less than half a percent.
-constexpr std::size_t face_samples_per_piece = 25, most_face_samples = 60000;
-constexpr std::size_t surface_samples_per_piece = 16, most_surface_samples = 40000;
+//! Places measured per direction, for a Bezier piece, at least and at most. A closest point costs
+//! one or two microseconds, so the whole stays under half a second on one core; two or three times
+//! as many changed root mean squares by less than half a percent.
+constexpr std::size_t face_samples_per_piece = 25, least_face_samples = 16000,
+                      most_face_samples = 60000;
+constexpr std::size_t surface_samples_per_piece = 16, least_surface_samples = 10000,
+                      most_surface_samples = 40000;
 //! Midpoints per Bezier piece and direction: a bicubic piece bends too little for more than the
 //! upper bound to show anything new, and fewer than the lower bound could miss a wiggle.
 constexpr Index least_side = 3, most_side = 16;
@@ -101,8 +103,9 @@ std::vector<Place> surface_places(const SplineSurface& surface)
     double total = 0.0;
     for (Index p = 0; p < pieces; ++p)
         total += area[p] = piece_area(surface, p);
-    const double samples = static_cast<double>(
-        std::min(most_surface_samples, surface_samples_per_piece * std::size_t{pieces}));
+    const double samples =
+        static_cast<double>(std::clamp(surface_samples_per_piece * std::size_t{pieces},
+                                       least_surface_samples, most_surface_samples));
     std::vector<Place> places;
     for (Index p = 0; p < pieces; ++p) {
         const double wanted = total > 0.0 ? std::sqrt(samples * area[p] / total) : 0.0;
@@ -168,7 +171,7 @@ Result<Deviation> measure_deviation(const ManifoldMesh& source, const QuadComple
         const std::size_t wanted =
             face_samples_per_piece * pieces_per_quad * std::size_t{surface.patch_count()};
         const std::vector<Place> places =
-            source_places(source, std::min(most_face_samples, wanted));
+            source_places(source, std::clamp(wanted, least_face_samples, most_face_samples));
         const auto distances =
             measure(places, context, [&](const Vec3& p) { return locator.closest(p).distance; });
         if (!distances)
