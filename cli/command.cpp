@@ -76,6 +76,17 @@ std::optional<Length> parse_length(std::string text)
     return length;
 }
 
+// Reads an option's length into `length`. False, and says so, for what is none or negative.
+bool read_length(const char* option, const std::string& text, std::optional<Length>& length)
+{
+    length = parse_length(text);
+    if (length && length->value >= 0.0)
+        return true;
+    std::fprintf(stderr, "bot2nurbs: %s %s is neither a length nor a percentage\n", option,
+                 text.c_str());
+    return false;
+}
+
 // False for what is neither a word nor an angle.
 bool parse_features(const std::string& text, ConvertOptions& options)
 {
@@ -333,33 +344,12 @@ std::variant<Command, int> parse_command(int argc, char** argv)
                      layout.c_str());
         return exit_code(ErrorCode::bad_option);
     }
-    if (*weld_option) {
-        o.weld = parse_length(weld);
-        if (!o.weld || !(o.weld->value >= 0.0)) {
-            std::fprintf(stderr, "bot2nurbs: --weld %s is neither a length nor a percentage\n",
-                         weld.c_str());
-            return exit_code(ErrorCode::bad_option);
-        }
-    }
-    if (*fill_holes_option) {
-        o.fill_holes = parse_length(fill_holes);
-        if (!o.fill_holes || !(o.fill_holes->value >= 0.0)) {
-            std::fprintf(stderr,
-                         "bot2nurbs: --fill-holes %s is neither a length nor a percentage\n",
-                         fill_holes.c_str());
-            return exit_code(ErrorCode::bad_option);
-        }
-    }
+    if ((*weld_option && !read_length("--weld", weld, o.weld)) ||
+        (*fill_holes_option && !read_length("--fill-holes", fill_holes, o.fill_holes)) ||
+        (*tolerance_option && !read_length("--tolerance", tolerance, o.tolerance)))
+        return exit_code(ErrorCode::bad_option);
     if (*patches_option)
         o.patches = patches;
-    if (*tolerance_option) {
-        o.tolerance = parse_length(tolerance);
-        if (!o.tolerance) {
-            std::fprintf(stderr, "bot2nurbs: --tolerance %s is neither a length nor a percentage\n",
-                         tolerance.c_str());
-            return exit_code(ErrorCode::bad_option);
-        }
-    }
     if (*max_patches_option)
         o.max_patches = max_patches;
     if (*knots_option)

@@ -53,7 +53,8 @@ struct RepairedMesh {
 //!    a closed fan of faces are left alone, so that solids that merely touch stay apart, and fans
 //!    that the weld would only join in a point keep vertices of their own;
 //! 2. repeated_vertex, duplicate_face: such faces go (of copies the first stays);
-//! 3. collapsed_edge, flipped_cap: faces without area go; an edge of no length is collapsed, a
+//! 3. collapsed_edge, flipped_cap: faces without area (thinner than tolerance::weld, however far
+//!    corners are welded) go; an edge of no length is collapsed, a
 //!    corner on its opposite edge splits that edge's other face. What cannot go without tearing or
 //!    folding the surface stays, with the warning zero_area_kept;
 //! 4. oriented: faces are turned to agree with the majority of their component;

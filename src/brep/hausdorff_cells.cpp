@@ -18,6 +18,12 @@ constexpr Index seed_cells = 2;
 //! How much nearer another place on the surface must be to count as missed.
 constexpr double doubtful_share = 0.01;
 
+//! A triangle is thin when its longest side is so many times its height over it.
+constexpr double thin_ratio = 4.0;
+//! The closest element is not farther than one near by, but for rounding.
+constexpr double limit_slack = 1.0 + 1e-9;
+
+//! Width of squares that cover a mesh, so many.
 double mean_width(const PlacedMesh& mesh, Index pieces)
 {
     double area = 0.0;
@@ -26,11 +32,6 @@ double mean_width(const PlacedMesh& mesh, Index pieces)
                                  mesh.corner(f, 2) - mesh.corner(f, 0)));
     return std::sqrt(area / pieces);
 }
-
-//! A triangle is thin when its longest side is so many times its height over it.
-constexpr double thin_ratio = 4.0;
-//! The closest element is not farther than one near by, but for rounding.
-constexpr double limit_slack = 1.0 + 1e-9;
 
 Box3 box_of(const ManifoldMesh& source, const SplineSurface& surface)
 {

@@ -105,10 +105,10 @@ Result<std::vector<QuadChart>> compute_charts(const ManifoldMesh& source, const 
 
 std::vector<double> corner_angles(const std::vector<QuadChart>& charts)
 {
+    const std::vector<Vec2> corner = unit_square();
     std::vector<double> angles(4 * charts.size(), 0.0);
     for (std::size_t q = 0; q < charts.size(); ++q) {
         const QuadChart& chart = charts[q];
-        const std::vector<Vec2> corner = unit_square();
         for (const auto& t : chart.triangles) {
             for (std::size_t k = 0; k < 3; ++k) {
                 const QuadChart::Vertex& apex = chart.vertices[t[k]];

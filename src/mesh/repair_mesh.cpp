@@ -89,7 +89,8 @@ private:
         for (Index v = 0; v < soup_.positions.size(); ++v)
             if (!used[v])
                 soup_.positions[v] = out_.box.min;
-        distance_ = options_.weld * out_.box.diagonal();
+        weld_ = options_.weld * out_.box.diagonal();
+        thin_ = std::min(options_.weld, tolerance::weld) * out_.box.diagonal();
         if (!(out_.box.diagonal() > 0.0))
             return Error{ErrorCode::bad_geometry, "all vertices of the mesh lie on one point", 0};
         if (!std::isfinite(norm_squared(out_.box.max - out_.box.min)))
@@ -135,7 +136,7 @@ private:
         for (Index h = 0; h < 3 * triangles_.size(); ++h)
             if (topology.face_count(topology.edge_of(h)) == 1)
                 open[topology.from(h)] = open[topology.from(SoupTopology::next(h))] = 1;
-        const std::vector<Index> group = weld_points(soup_.positions, open, distance_);
+        const std::vector<Index> group = weld_points(soup_.positions, open, weld_);
         bool any = false;
         for (Index v = 0; v < group.size(); ++v)
             any = any || group[v] != v;
@@ -157,7 +158,8 @@ private:
             welded += used_before[v] && !used_after[v];
         note("weld", welded,
              "welded " + count_of(welded, "vertex to another", "vertices to others") +
-                 " at the same place");
+                 (options_.weld > tolerance::weld ? " within the weld distance"
+                                                  : " at the same place"));
     }
 
     //! Where welding only made separate fans meet in a point, each gets a vertex of its own back:
@@ -205,7 +207,7 @@ private:
     void remove_degenerate()
     {
         const DegenerateRemoval removal =
-            remove_degenerate_faces(soup_.positions, distance_, triangles_);
+            remove_degenerate_faces(soup_.positions, thin_, triangles_);
         std::vector<char> kept(triangles_.size());
         for (std::size_t f = 0; f < triangles_.size(); ++f)
             kept[f] = triangles_[f][0] != invalid_index;
@@ -291,7 +293,7 @@ private:
         orient(topology);
         if (Status bad = build_components(topology))
             return *bad;
-        turn_outward(out_, distance_);
+        turn_outward(out_, thin_);
         return std::move(out_);
     }
 
@@ -387,7 +389,10 @@ private:
     const RepairOptions& options_;
     Context& context_;
     RepairedMesh out_;
-    double distance_ = 0.0;
+    double weld_ = 0.0; //!< Open corners so near each other become one.
+    //! What is thinner is flat but for rounding. Not more than that, however far corners are
+    //! welded: faces of that size are the shape.
+    double thin_ = 0.0;
     std::vector<std::array<Index, 3>> triangles_;
     std::vector<Index> source_; //!< Per triangle: its number in the soup.
     std::vector<char> turn_;

@@ -97,6 +97,25 @@ TEST(RepairMesh, welds_what_is_near_and_nothing_farther)
     EXPECT_TRUE(wide->components[0].mesh.closed());
 }
 
+TEST(RepairMesh, a_wide_weld_leaves_closed_parts_and_small_faces_as_they_are)
+{
+    // Edges of icosphere(4) are 0.08 long, and 0.1 of the diagonal are 0.35; the plate is 0.02
+    // thick.
+    RepairOptions options;
+    options.weld = 0.1;
+    const ManifoldMesh plate = fx::moved(fx::cube(4), [](const Vec3& p) {
+        return Vec3{p.x, p.y, 0.02 * p.z};
+    });
+    for (const ManifoldMesh& mesh : {fx::icosphere(4), plate}) {
+        const Result<RepairedMesh> repaired = repair(fx::soup_of(mesh), options);
+        ASSERT_TRUE(repaired);
+        EXPECT_TRUE(repaired->notes.empty()) << repaired->notes.front().message;
+        ASSERT_EQ(repaired->components.size(), 1u);
+        EXPECT_EQ(repaired->components[0].mesh.positions(), mesh.positions());
+        EXPECT_EQ(repaired->components[0].mesh.triangles(), mesh.triangles());
+    }
+}
+
 TEST(RepairMesh, solids_that_touch_in_a_point_stay_apart)
 {
     const TriangleSoup cube = fx::soup_of(fx::cube(2));
