@@ -43,7 +43,7 @@ void cancel_on_signals(Context& context)
 }
 
 //! Large arrays come and go from stage to stage. Given back to the system each time, their pages
-//! would have to be cleared and mapped again: a fifth of the time on a million triangles.
+//! would have to be cleared and mapped again, which shows on meshes of a million triangles.
 void keep_memory()
 {
 #ifdef __GLIBC__

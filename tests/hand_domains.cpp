@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <string>
 
 namespace bot2nurbs::test {
@@ -323,6 +324,27 @@ HandDomain open_cylinder(int around, int along, int cells)
         return Vec3{std::cos(angle), std::sin(angle), (q / nu + v) * 0.8};
     };
     return build_grid_domain(surface, 0, cells);
+}
+
+HandDomain plane_l(int cells)
+{
+    CoarseSurface surface;
+    surface.vertex_count = 6;
+    surface.quads = {{1, 2, 3, 0}, {1, 0, 4, 5}};
+    const std::vector<Vec3> corner{{1, 1, 0}, {0, 0, 0}, {5, 0, 0},
+                                   {5, 1, 0}, {1, 2, 0}, {0, 2, 0}};
+    surface.at = [=](Index q, double u, double v) {
+        const auto& c = surface.quads[q];
+        return (1 - v) * ((1 - u) * corner[c[0]] + u * corner[c[1]]) +
+               v * ((1 - u) * corner[c[3]] + u * corner[c[2]]);
+    };
+    HandDomain hand = build_grid_domain(surface, 0, cells);
+    const QuadComplex& k = hand.domain.complex;
+    std::vector<Index> corners(k.vertex_count());
+    std::iota(corners.begin(), corners.end(), Index{0});
+    hand.domain.complex =
+        expect_value(QuadComplex::build(k.vertex_count(), k.quads(), {}, corners), "plane L");
+    return hand;
 }
 
 HandDomain torus_askew(int turns, int step, double minor)

@@ -38,6 +38,10 @@ HandDomain genus2_voxels(int level = 0, int cells = 4);
 //! An open cylinder (axis z, radius 1) of around * along quads: two boundary loops.
 HandDomain open_cylinder(int around = 4, int along = 2, int cells = 4);
 
+//! A plane L with one arm of length 4 and one of 1, both of width 1, in two quads that meet in its
+//! reflex corner of 270 degrees.
+HandDomain plane_l(int cells = 8);
+
 //! The same domain on a carrier that splits every mesh face into three at a point of its inside:
 //! paths and topology are unchanged, charts are dropped.
 HandDomain with_refined_carrier(const HandDomain& hand);

@@ -244,6 +244,23 @@ TEST_F(ConvertTest, an_open_mesh_becomes_an_open_surface_with_a_warning_unless_i
     }
 }
 
+TEST_F(ConvertTest, two_patches_at_a_reflex_corner_lie_as_the_source_has_them)
+{
+    // With and without refinement: the angles of corners go to the fit on two ways.
+    for (const bool refine : {false, true}) {
+        ConvertOptions options = options_for({plane_l()});
+        options.outputs = {path("a.3dm")};
+        options.closure = Closure::open;
+        if (refine)
+            options.tolerance = Length{1e-3, true};
+        Context context;
+        const Result<ConvertReport> report = convert(options, context);
+        ASSERT_TRUE(report) << report.error().message;
+        EXPECT_LT(report->deviation().max(), 1e-3 * report->diagonal);
+        EXPECT_EQ(report->components[0].brep_faces, 2u); // No need to cut them.
+    }
+}
+
 TEST_F(ConvertTest, an_open_mesh_is_refused_as_a_solid_with_its_loops)
 {
     ConvertOptions options = options_for({open_cylinder()});

@@ -40,5 +40,23 @@ INSTANTIATE_TEST_SUITE_P(, Examples,
                              return name.substr(0, name.find('.'));
                          });
 
+TEST(ExamplesWithEdges, are_a_closed_arch_and_an_open_hood)
+{
+    for (const bool closed : {true, false}) {
+        ConvertOptions options;
+        options.input = std::string(BOT2NURBS_EXAMPLES "/") + (closed ? "arch.obj" : "hood.obj");
+        Context context;
+        const Result<InputReport> report = check_input(options, context);
+        ASSERT_TRUE(report) << report.error().message;
+        EXPECT_FALSE(report->rejection);
+        EXPECT_TRUE(report->repairs.empty());
+        EXPECT_EQ(report->mesh.closed, closed);
+        EXPECT_TRUE(report->mesh.manifold && report->mesh.oriented);
+        EXPECT_EQ(report->mesh.self_intersecting_pairs, 0u);
+        EXPECT_GT(report->mesh.sharp_edges, 100u);
+        EXPECT_EQ(report->mesh.boundary_loops.size(), closed ? 0u : 1u);
+    }
+}
+
 } // namespace
 } // namespace bot2nurbs
