@@ -6,11 +6,25 @@
 #include <algorithm>
 #include <cstddef>
 #include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
 #include <oneapi/tbb/task_arena.h>
 
 namespace bot2nurbs {
+
+//! Runs work() where loops inside use as many threads as the context allows.
+template <class Work> void run_in_arena(const Context& context, const Work& work)
+{
+    // Inside an arena that is small enough already, the default one above all, another would cost
+    // more than small loops take, and its threads would come on top.
+    const int most = oneapi::tbb::this_task_arena::max_concurrency();
+    if (context.threads == 0 || static_cast<unsigned>(most) <= context.threads) {
+        work();
+    } else {
+        oneapi::tbb::task_arena arena(static_cast<int>(context.threads));
+        arena.execute(work);
+    }
+}
 
 //! Runs body(begin, end) over [0, count) in chunks of fixed size, on as many threads as the context
 //! allows. Chunk borders depend on `count` and `chunk` alone, so a result stored per chunk and
@@ -40,16 +54,20 @@ bool for_each_chunk(const Context& context, std::size_t count, std::size_t chunk
             },
             oneapi::tbb::simple_partitioner());
     };
-    // More threads than cores only make TBB print a warning; with all cores the default arena does,
-    // and one of our own would cost more than small loops take.
-    const int cores = oneapi::tbb::info::default_concurrency();
-    if (context.threads == 0 || context.threads >= static_cast<unsigned>(cores)) {
-        run_all();
-    } else {
-        oneapi::tbb::task_arena arena(static_cast<int>(context.threads));
-        arena.execute(run_all);
-    }
+    run_in_arena(context, run_all);
     return !context.cancelled();
+}
+
+//! Runs two functions that write to different places, at the same time where the context allows.
+template <class First, class Second>
+void run_both(const Context& context, const First& first, const Second& second)
+{
+    if (context.threads == 1) {
+        first();
+        second();
+    } else {
+        run_in_arena(context, [&] { oneapi::tbb::parallel_invoke(first, second); });
+    }
 }
 
 } // namespace bot2nurbs

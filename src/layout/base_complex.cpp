@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "layout/base_complex.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <oneapi/tbb/enumerable_thread_specific.h>
 
 namespace bot2nurbs {
 
 namespace {
+
+// Tiles mapped before any of their spokes are drawn: enough for all threads, few to keep.
+constexpr std::size_t tiles_per_batch = 256;
+constexpr std::size_t tiles_per_task = 4;
 
 struct HalfPath {
     std::vector<PathNode> nodes;
@@ -20,6 +27,11 @@ struct Cut {
 };
 
 using CutKey = std::pair<Index, Index>;
+
+CutKey key_of(Index i, Index j)
+{
+    return std::minmax(i, j);
+}
 
 // The border vertex in the middle of side s, by arc length, among those on mesh edges.
 Index middle_of_side(const Overlay& tile, Index s)
@@ -85,63 +97,125 @@ SurfacePath reversed(SurfacePath path)
     return path;
 }
 
-} // namespace
+// Maps tiles to polygons and draws their spokes.
+class TileSpokes {
+public:
+    explicit TileSpokes(const Tiles& tiles)
+        : tiles_(tiles), builders_([&tiles] { return OverlayBuilder(tiles.mesh()); })
+    {
+        tiles.list_members(offset_, members_);
+    }
 
-Result<PatchComplex> build_base_complex(const Tiles& tiles, Context& context)
-{
-    const ManifoldMesh& mesh = tiles.mesh();
-    std::vector<Index> offset, members;
-    tiles.list_members(offset, members);
-    std::map<CutKey, Cut> cuts;
-    OverlayBuilder builder(mesh);
-    for (Index i = 0; i < tiles.sites().size(); ++i) {
-        if (context.cancelled())
-            return Context::cancelled_error("base complex");
-        const std::vector<Index> own(members.begin() + offset[i], members.begin() + offset[i + 1]);
-        std::vector<Index> neighbour;
-        const auto failed = [&](const char* why) {
-            return Error{ErrorCode::layout_failed,
-                         "tile " + std::to_string(i) + " around vertex " +
-                             std::to_string(tiles.sites()[i]) + " " + why,
-                         tiles.sites()[i]};
-        };
-        const Index site = tiles.sites()[i];
-        const std::optional<Overlay> tile = builder.tile(tiles.labels(), own, site, neighbour);
-        if (!tile)
-            return failed("is not a disk");
-        const auto map = map_to_polygon(*tile, regular_polygon(tile->side_count()));
-        if (!map)
-            return failed("cannot be mapped to a polygon");
-        // A site at the boundary is the first corner of its tile; the cuts that begin and end there
-        // are crossed along the boundary.
-        const bool open = neighbour.front() == invalid_index;
-        Index center = open ? 0 : invalid_index;
-        for (Index v = tile->boundary_count; v < tile->vertices.size(); ++v)
-            if (tile->vertices[v].mesh_vertex == site)
+    Status run(Context& context)
+    {
+        const std::size_t count = tiles_.sites().size();
+        for (std::size_t first = 0; first < count; first += tiles_per_batch) {
+            batch_.assign(std::min(tiles_per_batch, count - first), {});
+            const auto for_each_tile = [&](auto body) {
+                return for_each_chunk(context, batch_.size(), tiles_per_task,
+                                      [&](std::size_t begin, std::size_t end) {
+                                          for (std::size_t k = begin; k < end; ++k)
+                                              body(static_cast<Index>(first + k), batch_[k]);
+                                      });
+            };
+            if (!for_each_tile([this](Index i, Tile& tile) { map(i, tile); }))
+                return Context::cancelled_error("base complex");
+            for (std::size_t k = 0; k < batch_.size(); ++k)
+                choose_crossings(static_cast<Index>(first + k), batch_[k]);
+            if (!for_each_tile([this](Index i, Tile& tile) { draw(i, tile); }))
+                return Context::cancelled_error("base complex");
+            for (std::size_t k = 0; k < batch_.size(); ++k)
+                if (batch_[k].failed) {
+                    const Index i = static_cast<Index>(first + k), site = tiles_.sites()[i];
+                    return Error{ErrorCode::layout_failed,
+                                 "tile " + std::to_string(i) + " around vertex " +
+                                     std::to_string(site) + " " + batch_[k].failed,
+                                 site};
+                }
+        }
+        return {};
+    }
+
+    const std::map<CutKey, Cut>& cuts() const { return cuts_; }
+
+private:
+    struct Tile {
+        const char* failed = nullptr; // Why, when it cannot be mapped or drawn.
+        Overlay overlay;
+        std::vector<Index> neighbour; // Per side.
+        std::vector<Vec2> uv;
+        bool open = false; // It is at the boundary, its site its first corner.
+    };
+
+    void map(Index i, Tile& tile)
+    {
+        const std::vector<Index> own(members_.begin() + offset_[i],
+                                     members_.begin() + offset_[i + 1]);
+        std::optional<Overlay> overlay =
+            builders_.local().tile(tiles_.labels(), own, tiles_.sites()[i], tile.neighbour);
+        if (!overlay) {
+            tile.failed = "is not a disk";
+            return;
+        }
+        tile.overlay = std::move(*overlay);
+        tile.open = tile.neighbour.front() == invalid_index;
+        std::optional<ConvexMap> map =
+            map_to_polygon(tile.overlay, regular_polygon(tile.overlay.side_count()));
+        if (map)
+            tile.uv = std::move(map->uv);
+        else
+            tile.failed = "cannot be mapped to a polygon";
+    }
+
+    // The cuts that begin and end at a site at the boundary are crossed along the boundary.
+    static bool has_spoke(const Tile& tile, Index side)
+    {
+        return !tile.open || (side > 1 && side + 2 < tile.overlay.side_count());
+    }
+
+    // The first tile at a cut says where it is crossed.
+    void choose_crossings(Index i, const Tile& tile)
+    {
+        for (Index s = 0; !tile.failed && s < tile.overlay.side_count(); ++s)
+            if (has_spoke(tile, s)) {
+                Index& edge = cuts_[key_of(i, tile.neighbour[s])].edge;
+                if (edge == invalid_index)
+                    edge = tile.overlay.vertices[middle_of_side(tile.overlay, s)].edge;
+            }
+    }
+
+    void draw(Index i, Tile& tile)
+    {
+        if (tile.failed)
+            return;
+        const ManifoldMesh& mesh = tiles_.mesh();
+        const Overlay& overlay = tile.overlay;
+        const Index site = tiles_.sites()[i];
+        Index center = tile.open ? 0 : invalid_index;
+        for (Index v = overlay.boundary_count; v < overlay.vertices.size(); ++v)
+            if (overlay.vertices[v].mesh_vertex == site)
                 center = v;
         std::vector<Segment> spokes;
         std::vector<Index> side_of;
-        for (Index s = 0; s < tile->side_count(); ++s) {
-            if (open && (s <= 1 || s + 2 >= tile->side_count()))
+        for (Index s = 0; s < overlay.side_count(); ++s) {
+            if (!has_spoke(tile, s))
                 continue;
-            Cut& cut = cuts[{std::min(i, neighbour[s]), std::max(i, neighbour[s])}];
-            Index target = middle_of_side(*tile, s);
-            if (cut.edge == invalid_index) {
-                cut.edge = tile->vertices[target].edge;
-            } else {
-                for (Index v = 0; v < tile->boundary_count; ++v)
-                    if (tile->vertices[v].edge == cut.edge)
-                        target = v;
-            }
+            const Index edge = cuts_.at(key_of(i, tile.neighbour[s])).edge;
+            Index target = middle_of_side(overlay, s);
+            for (Index v = 0; v < overlay.boundary_count; ++v)
+                if (overlay.vertices[v].edge == edge)
+                    target = v;
             spokes.push_back({center, target});
             side_of.push_back(s);
         }
-        auto drawn = draw_segments(mesh, *tile, map->uv, spokes);
-        if (!drawn)
-            return failed("cannot hold its spokes");
+        auto drawn = draw_segments(mesh, overlay, tile.uv, spokes);
+        if (!drawn) {
+            tile.failed = "cannot hold its spokes";
+            return;
+        }
         for (std::size_t k = 0; k < side_of.size(); ++k) {
-            const Index other = neighbour[side_of[k]];
-            Cut& cut = cuts[{std::min(i, other), std::max(i, other)}];
+            const Index other = tile.neighbour[side_of[k]];
+            Cut& cut = cuts_.at(key_of(i, other)); // Each tile writes its own half.
             HalfPath& half = cut.half[i < other ? 0 : 1];
             half.nodes = std::move((*drawn)[k].nodes);
             if (!half.nodes.empty()) {
@@ -155,9 +229,25 @@ Result<PatchComplex> build_base_complex(const Tiles& tiles, Context& context)
         }
     }
 
+    const Tiles& tiles_;
+    std::vector<Index> offset_, members_;
+    oneapi::tbb::enumerable_thread_specific<OverlayBuilder> builders_;
+    std::vector<Tile> batch_;
+    std::map<CutKey, Cut> cuts_;
+};
+
+} // namespace
+
+Result<PatchComplex> build_base_complex(const Tiles& tiles, Context& context)
+{
+    const ManifoldMesh& mesh = tiles.mesh();
+    TileSpokes spokes(tiles);
+    if (Status failed = spokes.run(context))
+        return *failed;
+
     PatchComplex complex(mesh);
     std::map<CutKey, Index> path_of;
-    for (const auto& [key, cut] : cuts)
+    for (const auto& [key, cut] : spokes.cuts())
         path_of[key] =
             complex.add_path(join(mesh, tiles.sites()[key.first], tiles.sites()[key.second], cut));
     const auto& label = tiles.labels();
@@ -167,7 +257,7 @@ Result<PatchComplex> build_base_complex(const Tiles& tiles, Context& context)
             const Index j = label[path.b];
             if (j < i)
                 path = reversed(std::move(path));
-            path_of[{std::min(i, j), std::max(i, j)}] = complex.add_path(std::move(path));
+            path_of[key_of(i, j)] = complex.add_path(std::move(path));
         }
     for (Index f = 0; f < mesh.face_count(); ++f) {
         const auto& t = mesh.triangle(f);
@@ -177,7 +267,7 @@ Result<PatchComplex> build_base_complex(const Tiles& tiles, Context& context)
         std::vector<PatchComplex::Side> sides;
         for (int k = 0; k < 3; ++k) {
             const Index a = l[k], b = l[(k + 1) % 3];
-            sides.push_back({path_of.at({std::min(a, b), std::max(a, b)}), a > b});
+            sides.push_back({path_of.at(key_of(a, b)), a > b});
         }
         complex.add_face(std::move(sides));
     }

@@ -144,12 +144,17 @@ Result<Ground> prepare_ground(const ManifoldMesh& source, const LayoutOptions& o
     if (Status failed = route_joints(mesh, ground.constraints, ground.marks))
         return *failed;
 
-    // Curves end at sites on them.
-    std::vector<char> node = ground.corner;
-    for (const Index s : ground.constraints.sites)
-        node[s] = 1;
-    Measured on_carrier = measure(mesh, ground.marks, node, smoothing, context);
-    on_carrier.level->refine_at_curves(unit);
+    Measured on_carrier;
+    if (ground.carrier->refined || ground.constraints.binds()) {
+        // Curves end at sites on them.
+        std::vector<char> node = ground.corner;
+        for (const Index s : ground.constraints.sites)
+            node[s] = 1;
+        on_carrier = measure(mesh, ground.marks, node, smoothing, context);
+        on_carrier.level->refine_at_curves(unit);
+    } else {
+        on_carrier = std::move(on_source); // The same mesh, vertex by vertex.
+    }
     on_carrier.level->required = ground.constraints.sites;
     for (const auto& pair : ground.constraints.apart)
         on_carrier.level->apart.push_back({pair.a, pair.b});

@@ -78,14 +78,29 @@ std::vector<Index> spread_sites(const LayoutLevel& level, Index count)
             total += area[v];
         }
     std::sort(order.begin(), order.end());
+    // Of each share the vertex nearest to its centroid.
     std::vector<Index> sites;
     double sum = 0.0;
-    for (const auto& [code, v] : order) {
-        sum += area[v];
-        // The vertex in the middle of each share.
-        const double next = (static_cast<double>(sites.size()) + 0.5) / static_cast<double>(count);
-        if (sum > next * total)
-            sites.push_back(v);
+    for (std::size_t begin = 0; begin < order.size();) {
+        const double limit =
+            total * static_cast<double>(sites.size() + 1) / static_cast<double>(count);
+        std::size_t end = begin;
+        Vec3 centroid;
+        double weight = 0.0;
+        do {
+            const Index v = order[end++].second;
+            centroid += area[v] * mesh.position(v);
+            weight += area[v];
+        } while (end < order.size() && sum + weight < limit);
+        sum += weight;
+        centroid = weight > 0.0 ? centroid / weight : mesh.position(order[begin].second);
+        Index nearest = order[begin].second;
+        for (std::size_t i = begin; i < end; ++i)
+            if (norm_squared(mesh.position(order[i].second) - centroid) <
+                norm_squared(mesh.position(nearest) - centroid))
+                nearest = order[i].second;
+        sites.push_back(nearest);
+        begin = end;
     }
     return sites;
 }

@@ -13,7 +13,7 @@ namespace bot2nurbs {
 namespace {
 
 // Tiles need only be of about one size.
-constexpr int relaxations = 1;
+constexpr int relaxations = 0;
 
 } // namespace
 

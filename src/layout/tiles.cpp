@@ -82,13 +82,16 @@ void Tiles::propagate(const std::vector<Index>& seeds, bool along_boundary)
             } else {
                 improve(p, d + vp, label);
                 improve(q, d + vq, label);
-                const double pq = scale * norm(mesh_.position(p) - mesh_.position(q));
                 // Never nearer than the vertex just done: rounding on needles must not start it
-                // again.
-                if (label_[q] == label && distance_[q] <= d && vq > 0.0)
-                    improve(p, std::max(d, unfolded_distance(vq, vp, pq, d, distance_[q])), label);
-                if (label_[p] == label && distance_[p] <= d && vp > 0.0)
-                    improve(q, std::max(d, unfolded_distance(vp, vq, pq, d, distance_[p])), label);
+                // again. So only one that is still farther can come nearer.
+                const auto across = [&](Index u, double vu, Index w, double vw) {
+                    if (label_[w] != label || distance_[w] > d || distance_[u] <= d || vw <= 0.0)
+                        return;
+                    const double uw = scale * norm(mesh_.position(p) - mesh_.position(q));
+                    improve(u, std::max(d, unfolded_distance(vw, vu, uw, d, distance_[w])), label);
+                };
+                across(p, vp, q, vq);
+                across(q, vq, p, vp);
             }
             h = mesh_.twin(mesh_.prev(h));
         } while (h != first && h != invalid_index);

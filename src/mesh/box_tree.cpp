@@ -116,8 +116,7 @@ struct Task {
 //! by side.
 class Builder {
 public:
-    explicit Builder(const std::vector<Box3>& boxes)
-        : items_(boxes.size()), moved_(boxes.size()), order_(boxes.size())
+    explicit Builder(const std::vector<Box3>& boxes) : items_(boxes.size()), order_(boxes.size())
     {
         for (Index i = 0; i < boxes.size(); ++i)
             items_[i] = {boxes[i], i};
@@ -141,14 +140,14 @@ public:
             return small_subtree(task);
         std::array<Task, 2> half = divide(task);
         std::array<std::vector<BoxTree::Node>, 2> made;
-        const auto make = [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                made[i] = subtree(half[i], context);
-        };
-        if (context)
-            for_each_chunk(*context, 2, 1, make);
-        else
-            make(0, 2);
+        const auto make = [&](std::size_t i) { made[i] = subtree(half[i], context); };
+        if (context) {
+            run_both(
+                *context, [&] { make(0); }, [&] { make(1); });
+        } else {
+            make(0);
+            make(1);
+        }
         if (made[0].empty() || made[1].empty())
             return {}; // cancelled
         // The root, the roots of both halves, then the rest of one after the other.
@@ -181,9 +180,9 @@ private:
             const auto [task, at] = open.back();
             open.pop_back();
             if (task.count <= leaf_items) {
-                // Partitions are stable, so items of a leaf are in the order of their numbers.
                 for (Index i = 0; i < task.count; ++i)
                     order_[task.first + i] = items_[task.first + i].number;
+                std::sort(order_.begin() + task.first, order_.begin() + task.first + task.count);
                 nodes[at] = {task.bounds.items.min, task.bounds.items.max, task.first, task.count};
                 continue;
             }
@@ -202,7 +201,6 @@ private:
     {
         Item* const first = items_.data() + task.first;
         Item* const last = first + task.count;
-        Item* const moved = moved_.data() + task.first;
         const Split split = task.depth < surface_area_depth
                                 ? find_split(first, last, task.bounds.centers)
                                 : Split{};
@@ -213,23 +211,23 @@ private:
                 (i < kept ? left : right).add(first[i]);
         } else {
             kept = 0;
-            Index gone = 0;
-            for (const Item* i = first; i != last; ++i) {
-                if (split.bin_of(i->box) < split.bin) {
-                    left.add(*i);
-                    first[kept++] = *i;
-                } else {
-                    right.add(*i);
-                    moved[gone++] = *i;
-                }
+            Index end = task.count;
+            const auto goes_left = [&](Index i) { return split.bin_of(first[i].box) < split.bin; };
+            for (;;) {
+                while (kept < end && goes_left(kept))
+                    left.add(first[kept++]);
+                while (kept < end && !goes_left(end - 1))
+                    right.add(first[--end]);
+                if (kept == end)
+                    break;
+                std::swap(first[kept], first[end - 1]);
             }
-            std::copy(moved, moved + gone, first + kept);
         }
         return {Task{task.first, kept, task.depth + 1, left},
                 Task{task.first + kept, task.count - kept, task.depth + 1, right}};
     }
 
-    std::vector<Item> items_, moved_;
+    std::vector<Item> items_;
     std::vector<Index> order_;
 };
 

@@ -2,6 +2,7 @@
 #include "bot2nurbs/check_mesh.h"
 
 #include "bot2nurbs/tolerance.h"
+#include "core/parallel.h"
 #include "mesh/degenerate_faces.h"
 #include "mesh/features.h"
 #include "mesh/self_intersection.h"
@@ -41,9 +42,21 @@ public:
         if (soup_.triangles.empty())
             report("empty", "the mesh has no faces", {1, 0});
         check_faces();
-        check_vertices();
-        if (!triangles_.empty())
-            check_topology();
+        SelfIntersections crossings;
+        run_both(
+            context_,
+            [&] {
+                check_vertices();
+                if (!triangles_.empty())
+                    check_topology();
+            },
+            [&] {
+                // Vertices at equal positions are equal for the test, whatever their numbers.
+                if (options_.self_intersections && !triangles_.empty())
+                    crossings = find_self_intersections(soup_.positions, triangles_,
+                                                        options_.kept_pairs, context_);
+            });
+        report_crossings(crossings);
         return std::move(report_);
     }
 
@@ -202,8 +215,6 @@ private:
                several(inward, "closed component turns inward", "closed components turn inward",
                        "at face"),
                inward);
-        if (options_.self_intersections)
-            check_crossings();
     }
 
     Vec3 area_vector(Index f) const
@@ -261,11 +272,8 @@ private:
         }
     }
 
-    void check_crossings()
+    void report_crossings(const SelfIntersections& found)
     {
-        // Vertices at equal positions are equal for the test, whatever their numbers.
-        const SelfIntersections found =
-            find_self_intersections(soup_.positions, triangles_, options_.kept_pairs, context_);
         report_.self_intersecting_pairs = found.count;
         report_.complete = found.complete;
         for (const auto& pair : found.pairs)

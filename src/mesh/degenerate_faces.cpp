@@ -2,6 +2,7 @@
 #include "mesh/degenerate_faces.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace bot2nurbs {
 
@@ -223,24 +224,41 @@ bool has_no_area(const Vec3& a, const Vec3& b, const Vec3& c, double distance)
 
 std::vector<Index> duplicate_faces(const std::vector<std::array<Index, 3>>& triangles)
 {
+    if (triangles.empty())
+        return {};
+    // Faces by their smallest corner, then by the two others: few share the first.
     struct Key {
-        std::array<Index, 3> corners;
-        Index face;
+        Index middle, largest, face;
         bool operator<(const Key& o) const
         {
-            return corners < o.corners || (corners == o.corners && face < o.face);
+            return std::tie(middle, largest, face) < std::tie(o.middle, o.largest, o.face);
         }
     };
+    const auto smallest = [](const std::array<Index, 3>& t) {
+        return std::min({t[0], t[1], t[2]});
+    };
+    Index last = 0;
+    for (const auto& t : triangles)
+        last = std::max(last, smallest(t));
+    std::vector<Index> first(std::size_t{last} + 2, 0);
+    for (const auto& t : triangles)
+        ++first[smallest(t) + 1];
+    for (Index v = 0; v <= last; ++v)
+        first[v + 1] += first[v];
     std::vector<Key> keys(triangles.size());
+    std::vector<Index> slot(first.begin(), first.end() - 1);
     for (Index f = 0; f < triangles.size(); ++f) {
-        keys[f] = {triangles[f], f};
-        std::sort(keys[f].corners.begin(), keys[f].corners.end());
+        std::array<Index, 3> t = triangles[f];
+        std::sort(t.begin(), t.end());
+        keys[slot[t[0]]++] = {t[1], t[2], f};
     }
-    std::sort(keys.begin(), keys.end());
     std::vector<Index> copies;
-    for (std::size_t i = 1; i < keys.size(); ++i)
-        if (keys[i].corners == keys[i - 1].corners)
-            copies.push_back(keys[i].face);
+    for (Index v = 0; v <= last; ++v) {
+        std::sort(keys.begin() + first[v], keys.begin() + first[v + 1]);
+        for (Index i = first[v] + 1; i < first[v + 1]; ++i)
+            if (keys[i].middle == keys[i - 1].middle && keys[i].largest == keys[i - 1].largest)
+                copies.push_back(keys[i].face);
+    }
     std::sort(copies.begin(), copies.end());
     return copies;
 }
