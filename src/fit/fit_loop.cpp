@@ -107,13 +107,19 @@ FitLoop::FitLoop(const SplineNetwork& network, const ReducedNetwork& reduced,
 
 void FitLoop::weigh_by_samples()
 {
-    row_weights_ = weights;
     const Index quads = network_.complex.quad_count();
-    quad_share_.assign(quads, 0.0);
+    const double mean = 1.0 / quads;
+    std::vector<double> share(quads, 0.0);
     for (std::size_t i = 0; i < where.size(); ++i)
-        quad_share_[where[i].quad] += weights[i];
-    for (double& share : quad_share_)
-        share = std::max(share, least_share / quads) / 16.0;
+        share[where[i].quad] += weights[i];
+    for (double& s : share)
+        s = std::max(s, least_share * mean);
+    row_weights_ = weights;
+    for (std::size_t i = 0; i < where.size(); ++i)
+        row_weights_[i] *= std::sqrt(mean / share[where[i].quad]);
+    quad_share_.resize(quads);
+    for (Index q = 0; q < quads; ++q)
+        quad_share_[q] = std::sqrt(share[q] * mean) / 16.0;
 }
 
 void FitLoop::weigh_by_surface(const State& state)

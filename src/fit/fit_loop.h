@@ -58,9 +58,11 @@ private:
     //! What the distances make of the weights: more with emphasis, less where robust.
     std::vector<double> distance_factors(const State& state) const;
     double objective(const State& state, const std::vector<double>& factors) const;
-    //! First round: rows by area, as the samples say.
+    //! First round: halfway (geometrically) between weighing quads by area and alike. Weights by
+    //! area alone let a large quad follow its samples at the cost of a small one beside it, whose
+    //! part of their common parametrization it stretches until the small one folds.
     void weigh_by_samples();
-    //! Later rounds: halfway (geometrically) between weighing by area and by parameters, in which
+    //! Later rounds: the same, place by place: between weighing by area and by parameters, in which
     //! the energy is measured. Weights by area alone leave the largest errors at extraordinary
     //! vertices, where parameters crowd.
     void weigh_by_surface(const State& state);

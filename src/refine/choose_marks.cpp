@@ -2,6 +2,7 @@
 #include "refine/choose_marks.h"
 
 #include "bot2nurbs/refine_domain.h"
+#include "refine/grade_marks.h"
 
 #include <algorithm>
 
@@ -42,6 +43,20 @@ std::array<double, 2> widths(const QuadDomain& domain, Index quad)
             norm(corner(3) - corner(0)) + norm(corner(2) - corner(1))};
 }
 
+// Per edge: the distance between its ends.
+std::vector<double> edge_lengths(const QuadDomain& domain)
+{
+    const QuadComplex& complex = domain.complex;
+    const auto place = [&](Index v) { return domain.carrier.mesh.position(domain.vertices[v]); };
+    std::vector<double> lengths;
+    lengths.reserve(complex.edge_count());
+    for (Index e = 0; e < complex.edge_count(); ++e) {
+        const Index h = complex.halfedge_of_edge(e);
+        lengths.push_back(norm(place(complex.to(h)) - place(complex.from(h))));
+    }
+    return lengths;
+}
+
 // Marks the sides of a patch that halving it asks for.
 void mark(const Trial& trial, Index quad, std::vector<char>& marks)
 {
@@ -74,10 +89,12 @@ std::vector<char> choose_marks(const Trial& trial, Index max_patches)
         cut.pop_back();
 
     const MarkCosts costs = MarkCosts::of_regularity(complex, corner_angles(trial.charts));
+    const std::vector<double> lengths = edge_lengths(trial.domain);
     for (; !cut.empty(); cut.resize(cut.size() / 2)) {
         std::vector<char> marks(complex.edge_count(), 0);
         for (const Index q : cut)
             mark(trial, q, marks);
+        grade_marks(complex, lengths, cut, marks);
         marks = close_marks(complex, marks, costs);
         if (refined_count(complex, marks) <= max_patches)
             return marks;
