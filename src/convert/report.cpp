@@ -66,7 +66,8 @@ DomainReport all_domains(const std::vector<ComponentOutcome>& components)
     return sum;
 }
 
-//! Sizes summed; rounds, condition and termination those of the component with most rounds.
+//! Sizes and folds of all; rounds, condition and termination those of the component with most
+//! rounds.
 FitSummary all_fits(const std::vector<ComponentOutcome>& components)
 {
     FitSummary sum;
@@ -79,6 +80,10 @@ FitSummary all_fits(const std::vector<ComponentOutcome>& components)
         sum.samples += c.fit.samples;
         sum.condition = std::max(sum.condition, c.fit.condition);
         sum.used_fallback = sum.used_fallback || c.fit.used_fallback;
+        sum.folded_patches += c.fit.folded_patches;
+        sum.smallest_jacobians.insert(sum.smallest_jacobians.end(),
+                                      c.fit.smallest_jacobians.begin(),
+                                      c.fit.smallest_jacobians.end());
     }
     return sum;
 }

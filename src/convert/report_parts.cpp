@@ -3,6 +3,7 @@
 
 #include "convert/cloud_json.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
@@ -207,6 +208,11 @@ Json fit_json(const FitSummary& f)
     j["condition"] = f.condition;
     j["used_fallback"] = f.used_fallback;
     j["termination"] = f.termination;
+    j["folded_patches"] = f.folded_patches;
+    const auto worst = std::min_element(f.smallest_jacobians.begin(), f.smallest_jacobians.end());
+    if (worst != f.smallest_jacobians.end())
+        j["smallest_jacobian"] = {{"value", *worst},
+                                  {"patch", worst - f.smallest_jacobians.begin()}};
     return j;
 }
 

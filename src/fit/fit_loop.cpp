@@ -452,6 +452,9 @@ Status FitLoop::run()
         if (tangent)
             mu = std::max(mu_floor, mu_factor * mu);
     }
+    summary.smallest_jacobians = guard_.smallest_jacobians(state.surface, context_);
+    summary.folded_patches = static_cast<Index>(std::count_if(
+        state.folds.begin(), state.folds.end(), [](Index places) { return places > 0; }));
     unknowns = std::move(state.unknowns);
     return std::nullopt;
 }

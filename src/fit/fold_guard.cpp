@@ -4,6 +4,10 @@
 #include "core/parallel.h"
 #include "spline/bernstein.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace bot2nurbs {
 
 namespace {
@@ -73,6 +77,29 @@ std::vector<Index> FoldGuard::folds(const SplineSurface& surface, const Context&
                 });
     });
     return folds;
+}
+
+std::vector<double> FoldGuard::smallest_jacobians(const SplineSurface& surface,
+                                                  const Context& context) const
+{
+    std::vector<double> smallest(surface.patch_count(), 1.0);
+    if (!ready())
+        return smallest;
+    constexpr double place_count = 9.0 * pieces_per_quad;
+    for_each_chunk(context, smallest.size(), chunk_quads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t q = begin; q < end; ++q) {
+            double sum = 0.0, least = std::numeric_limits<double>::infinity();
+            for (std::size_t p = q * pieces_per_quad; p < (q + 1) * pieces_per_quad; ++p)
+                visit_places(surface, static_cast<Index>(p), [&](const Vec3& normal) {
+                    sum += norm(normal);
+                    if (!(reference_[p] == Vec3{}))
+                        least = std::min(least, dot(normal, reference_[p]));
+                });
+            if (std::isfinite(least))
+                smallest[q] = sum > 0.0 ? least * place_count / sum : 0.0;
+        }
+    });
+    return smallest;
 }
 
 } // namespace bot2nurbs

@@ -24,6 +24,10 @@ public:
     //! Per quad: places of a 3 x 3 grid on every piece whose normal turns away from the reference
     //! of the piece; pieces without a clear reference do not count. All zero when not ready.
     std::vector<Index> folds(const SplineSurface& surface, const Context& context) const;
+    //! Per quad: the smallest Jacobian at those places, the part of du x dv along the reference,
+    //! over the mean length of du x dv on the quad. 1 when not ready.
+    std::vector<double> smallest_jacobians(const SplineSurface& surface,
+                                           const Context& context) const;
 
 private:
     std::vector<Vec3> reference_; //!< Per piece; zero: none.
