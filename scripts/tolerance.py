@@ -60,7 +60,7 @@ def convert(command, model, tolerance, seconds):
 
 def row(model, tolerance, report, failure):
     if failure:
-        return f"| {model.stem} | {tolerance:g} | {failure} |" + " |" * 10, False
+        return f"| {model.stem} | {tolerance:g} | {failure} |" + " |" * 11, False
     percent = 100.0 / report["deviation"]["diagonal"]
     result = report["components"][0]["tolerance"]
     angle = report["continuity"]["max_g1_angle_deg"]
@@ -76,6 +76,7 @@ def row(model, tolerance, report, failure):
         f"{percent * result['upper_bound']:.3f}",
         f"{percent * report['deviation']['rms']:.4f}",
         report["domain"]["max_valence"],
+        report["fit"]["folded_patches"],
         f"{angle:.1e}",
         "solid" if report["brep"]["solid"] else "valid" if report["brep"]["valid"] else "not valid",
         f"{report['wall']:.1f}",
@@ -90,10 +91,10 @@ def table(rows, met):
 Written by `scripts/tolerance.py`; `--features off`, the spline scheme of default. {met} of {len(rows)} runs end within their
 tolerance, valid, without gaps and with joins within {MAX_ANGLE:g} degrees. Tolerance, bound and rms are percentages of the diagonal of the
 bounding box; the bound is proven, both ways, of the surface as written (`docs/algorithms/deviation.md`). Control points are those of the
-`.3dm` file. Seconds are of two cores that others use too: only their order of magnitude means something.
+`.3dm` file; *folded* patches face away from the mesh somewhere. Seconds are of two cores that others use too: only their order of magnitude means something.
 
-| model | tolerance % | termination | patches | control points | rounds | bound % | rms % | largest valence | join angle ° | B-Rep | seconds | peak MiB |
-|---|---:|---|---:|---:|---:|---:|---:|---:|---:|---|---:|---:|
+| model | tolerance % | termination | patches | control points | rounds | bound % | rms % | largest valence | folded | join angle ° | B-Rep | seconds | peak MiB |
+|---|---:|---|---:|---:|---:|---:|---:|---:|---:|---:|---|---:|---:|
 """ + "\n".join(rows) + "\n"
 
 

@@ -4,6 +4,7 @@
 #include "core/parallel.h"
 #include "fit/bernstein_gram.h"
 #include "fit/parameter_correction.h"
+#include "fit/plane_quads.h"
 #include "fit/stacked_rows.h"
 #include "spline/bernstein.h"
 
@@ -38,6 +39,9 @@ constexpr double huber = 1.345;
 //! Largest addition to the weight of a sample for its distance: beyond, single samples that no
 //! surface of the network can reach would take hold of it.
 constexpr double most_emphasis = 10.0;
+//! Weight of samples in plane quads: a bend in a plane face is seen at once, so such a quad yields
+//! less to what pulls at its rim.
+constexpr double plane_emphasis = 64.0;
 //! Standard deviation of normal errors over their median absolute value.
 constexpr double mad_to_deviation = 1.4826;
 //! Distances below this share of the box are rounding, not noise, and get full weight.
@@ -203,10 +207,15 @@ std::vector<double> FitLoop::distance_factors(const State& state) const
     std::vector<double> factors(points.size(), 1.0);
     if (state.feet.empty())
         return factors;
+    // Point-distance rows would hold back what slides in the plane as well.
+    if (options_.rows == DistanceRows::tangent)
+        for (std::size_t i = 0; i < points.size(); ++i)
+            if (in_plane_[i])
+                factors[i] = plane_emphasis;
     if (emphasis > 0.0)
         for (std::size_t i = 0; i < points.size(); ++i) {
             const double ratio = state.feet[i].distance / emphasis;
-            factors[i] += std::min(most_emphasis, ratio * ratio);
+            factors[i] *= 1.0 + std::min(most_emphasis, ratio * ratio);
         }
     if (!options_.robust)
         return factors;
@@ -417,6 +426,7 @@ Status FitLoop::run()
     round_fairness_ = options_.fairness;
     level_.assign(floor_.size(), options_.fairness);
     apply_fairness();
+    in_plane_ = in_plane_quads(network_.complex.quad_count(), points, normals, where, on_curve);
     guard_ = FoldGuard(network_.complex.quad_count(), normals, where);
     if (const auto error = first_round(state))
         return error;

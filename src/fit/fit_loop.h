@@ -80,6 +80,7 @@ private:
     Context& context_;
     NormalSystem system_;
     std::vector<double> row_weights_; //!< Per sample.
+    std::vector<char> in_plane_;      //!< Per sample: see in_plane_quads().
     std::vector<double> quad_share_;  //!< Per quad: its rows' share of the weight, over 16.
     std::vector<double> floor_;       //!< Per quad: least fairness.
     std::vector<double> level_;       //!< Per quad: this round's fairness.
