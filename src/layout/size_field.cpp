@@ -16,6 +16,16 @@ constexpr double min_density = 0.7;
 constexpr double max_density = 1.8;
 // More smoothing rounds than this on very dense meshes would cost more than the layout.
 constexpr int max_rounds = 60;
+constexpr std::size_t chunk_elements = 16384;
+
+// body(i) for every i below count, side by side.
+template <class Body> void for_all(const Context& context, Index count, const Body& body)
+{
+    for_each_chunk(context, count, chunk_elements, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            body(static_cast<Index>(i));
+    });
+}
 
 // The neighbours of every vertex, in one array.
 class Rings {
@@ -39,17 +49,12 @@ public:
         std::vector<T> last;
         for (int r = 0; r < rounds; ++r) {
             last = value;
-            for_each_chunk(context, value.size(), chunk_vertices,
-                           [&](std::size_t begin, std::size_t end) {
-                               for (std::size_t v = begin; v < end; ++v)
-                                   value[v] = averaged(static_cast<Index>(v), area, last);
-                           });
+            for_all(context, static_cast<Index>(value.size()),
+                    [&](Index v) { value[v] = averaged(v, area, last); });
         }
     }
 
 private:
-    static constexpr std::size_t chunk_vertices = 16384;
-
     template <class T>
     T averaged(Index v, const std::vector<double>& area, const std::vector<T>& value) const
     {
@@ -64,6 +69,23 @@ private:
 
     std::vector<Index> offset_, neighbour_;
 };
+
+// |dn|^2 over a triangle, which is k1^2 + k2^2 for the linear interpolant of the normals, times its
+// area. `most`: bound of |dn|^2.
+double bending_of(const ManifoldMesh& mesh, Index face, const std::vector<Vec3>& normal,
+                  double most)
+{
+    const auto& t = mesh.triangle(face);
+    const Vec3 p = mesh.position(t[1]) - mesh.position(t[0]);
+    const Vec3 q = mesh.position(t[2]) - mesh.position(t[0]);
+    const Vec3 dp = normal[t[1]] - normal[t[0]], dq = normal[t[2]] - normal[t[0]];
+    const double det = norm_squared(cross(p, q));
+    if (!(det > 0.0))
+        return 0.0;
+    const double gradient =
+        (dot(dp, dp) * dot(q, q) - 2.0 * dot(dp, dq) * dot(p, q) + dot(dq, dq) * dot(p, p)) / det;
+    return std::clamp(gradient, 0.0, most) * (0.5 * std::sqrt(det));
+}
 
 } // namespace
 
@@ -83,15 +105,21 @@ SizeField measure_size_field(const ManifoldMesh& mesh, double smoothing, const C
     const Index n = mesh.vertex_count();
     std::vector<Vec3> normal(n);
     std::vector<double> area(n, 0.0);
+    std::vector<double> of_face(mesh.face_count()), edges_squared(mesh.face_count());
+    for_all(context, mesh.face_count(), [&](Index f) {
+        const auto& t = mesh.triangle(f);
+        of_face[f] = norm(mesh.area_vector(f)) / 6.0;
+        for (int k = 0; k < 3; ++k)
+            edges_squared[f] += norm_squared(mesh.position(t[k]) - mesh.position(t[(k + 1) % 3]));
+    });
     double edge_sum = 0.0;
     for (Index f = 0; f < mesh.face_count(); ++f) {
         const Vec3 a = mesh.area_vector(f);
-        for (int k = 0; k < 3; ++k) {
-            normal[mesh.triangle(f)[k]] += a;
-            area[mesh.triangle(f)[k]] += norm(a) / 6.0;
-            edge_sum += norm_squared(mesh.position(mesh.triangle(f)[k]) -
-                                     mesh.position(mesh.triangle(f)[(k + 1) % 3]));
+        for (const Index v : mesh.triangle(f)) {
+            normal[v] += a;
+            area[v] += of_face[f];
         }
+        edge_sum += edges_squared[f];
     }
     // Averaging over a ring r times spreads over sqrt(r / 2) edge lengths.
     const double edge = std::sqrt(edge_sum / (3.0 * static_cast<double>(mesh.face_count())));
@@ -100,44 +128,34 @@ SizeField measure_size_field(const ManifoldMesh& mesh, double smoothing, const C
         static_cast<int>(std::min<double>(max_rounds, std::ceil(2.0 * ratio * ratio)));
     const Rings rings(mesh);
     rings.smooth(area, rounds, context, normal);
-    for (Vec3& v : normal)
-        v = normalized(v);
+    for_all(context, n, [&](Index v) { normal[v] = normalized(normal[v]); });
 
-    // |dn|^2 over a triangle is k1^2 + k2^2 for the linear interpolant of the normals.
+    // The normals of a needle's corners tell little about curvature across it: a turn of the normal
+    // over the smoothing length is all that can be meant.
+    const double most = 4.0 / (smoothing * smoothing);
+    for_all(context, mesh.face_count(),
+            [&](Index f) { of_face[f] = bending_of(mesh, f, normal, most); });
     std::vector<double> squared(n, 0.0);
     SizeField field;
     for (Index f = 0; f < mesh.face_count(); ++f) {
-        const auto& t = mesh.triangle(f);
-        const Vec3 p = mesh.position(t[1]) - mesh.position(t[0]);
-        const Vec3 q = mesh.position(t[2]) - mesh.position(t[0]);
-        const Vec3 dp = normal[t[1]] - normal[t[0]], dq = normal[t[2]] - normal[t[0]];
-        const double det = norm_squared(cross(p, q));
-        if (!(det > 0.0))
-            continue;
-        const double gradient =
-            (dot(dp, dp) * dot(q, q) - 2.0 * dot(dp, dq) * dot(p, q) + dot(dq, dq) * dot(p, p)) /
-            det;
-        // The normals of a needle's corners tell little about curvature across it: a turn of the
-        // normal over the smoothing length is all that can be meant.
-        const double bounded = std::clamp(gradient, 0.0, 4.0 / (smoothing * smoothing));
-        const double face_area = 0.5 * std::sqrt(det);
-        field.bending += bounded * face_area;
-        for (const Index v : t)
-            squared[v] += bounded * face_area / 3.0;
+        field.bending += of_face[f];
+        for (const Index v : mesh.triangle(f))
+            squared[v] += of_face[f] / 3.0;
     }
     for (Index v = 0; v < n; ++v)
         squared[v] = area[v] > 0.0 ? squared[v] / area[v] : 0.0;
     rings.smooth(area, rounds, context, squared);
 
+    field.density.assign(n, 1.0);
+    for_all(context, n, [&](Index v) { field.density[v] = std::pow(squared[v], 0.25); });
     double total = 0.0, mean = 0.0;
     for (Index v = 0; v < n; ++v) {
         total += area[v];
-        mean += area[v] * std::pow(squared[v], 0.25);
+        mean += area[v] * field.density[v];
     }
     mean = total > 0.0 ? mean / total : 0.0;
-    field.density.assign(n, 1.0);
-    for (Index v = 0; v < n && mean > 0.0; ++v)
-        field.density[v] = std::clamp(std::pow(squared[v], 0.25) / mean, min_density, max_density);
+    for (double& d : field.density)
+        d = mean > 0.0 ? std::clamp(d / mean, min_density, max_density) : 1.0;
     return field;
 }
 

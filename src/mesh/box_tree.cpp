@@ -116,10 +116,17 @@ struct Task {
 //! by side.
 class Builder {
 public:
-    explicit Builder(const std::vector<Box3>& boxes) : items_(boxes.size()), order_(boxes.size())
+    Builder(const std::vector<Box3>& boxes, const Context* context)
+        : items_(boxes.size()), order_(boxes.size())
     {
-        for (Index i = 0; i < boxes.size(); ++i)
-            items_[i] = {boxes[i], i};
+        const auto fill = [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                items_[i] = {boxes[i], static_cast<Index>(i)};
+        };
+        if (context)
+            for_each_chunk(*context, boxes.size(), serial_items, fill);
+        else
+            fill(0, boxes.size());
     }
 
     Task root() const
@@ -237,7 +244,7 @@ BoxTree::BoxTree(const std::vector<Box3>& boxes, const Context* context)
 {
     if (boxes.empty())
         return;
-    Builder builder(boxes);
+    Builder builder(boxes, context);
     nodes_ = builder.subtree(builder.root(), context);
     if (!nodes_.empty())
         items_ = builder.take_order();
