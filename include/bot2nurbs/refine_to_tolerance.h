@@ -27,6 +27,9 @@ struct ToleranceOptions {
     //! stalls with them it goes on with point-distance rows.
     FitOptions fit;
     SampleOptions samples;
+    //! Edges stay where they are, as someone drew them; else they are drawn anew after each cut,
+    //! straight in the map of their two quads, but for those along edges of the carrier.
+    bool keep_edges = false;
 
     std::optional<Error> check() const;
 };
@@ -48,6 +51,7 @@ struct RefinementRound {
     Index patches = 0, unknowns = 0;
     double rms = 0.0;        //!< Of the samples, weighted by area.
     DistanceBounds distance; //!< Both ways, as far as deciding about the tolerance needed it.
+    Index exceeding = 0;     //!< Patches known to exceed the tolerance.
     Index beyond = 0;        //!< Patches that are not known to be within the tolerance.
     double seconds = 0.0;    //!< Including the cutting that led to its domain.
 };

@@ -21,6 +21,7 @@ ToleranceOptions tolerance_options(const ConvertOptions& options, double toleran
     if (options.max_patches)
         result.max_patches = *options.max_patches;
     result.spline = options.spline;
+    result.keep_edges = options.domain_in.has_value() || options.quads.has_value() || options.cage;
     result.fit = options.fit;
     result.fit.fairness_floor = std::min(options.fit.fairness_floor, FitOptions().fairness_floor);
     return result;
@@ -46,9 +47,10 @@ void log_rounds(const ToleranceReport& report, const Context& context)
         const RefinementRound& r = report.rounds[i];
         context.log(LogLevel::info,
                     fmt::format("refinement round {}: {} patches, rms {:.4g}, distance at least "
-                                "{:.4g} and at most {:.4g}, {} patches beyond tolerance, {:.2f} s",
+                                "{:.4g} and at most {:.4g}, {} patches exceed the tolerance, {} "
+                                "more may, {:.2f} s",
                                 i + 1, r.patches, r.rms, r.distance.lower, r.distance.upper,
-                                r.beyond, r.seconds));
+                                r.exceeding, r.beyond - r.exceeding, r.seconds));
     }
 }
 

@@ -298,6 +298,7 @@ Json tolerance_json(const ToleranceReport& t)
                                {"rms", r.rms},
                                {"lower_bound", r.distance.lower},
                                {"upper_bound", r.distance.upper},
+                               {"exceeding", r.exceeding},
                                {"beyond", r.beyond},
                                {"seconds", r.seconds}});
     return j;

@@ -3,6 +3,7 @@
 
 #include "bot2nurbs/refine_domain.h"
 #include "refine/choose_marks.h"
+#include "refine/straighten_domain.h"
 #include "refine/trial.h"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ namespace {
 // Rounds without progress before refinement is given up: a place where a crease of the source is
 // rounded may get worse before it gets better. While other rows are left to try, fewer.
 constexpr std::size_t patience = 3, tangent_patience = 2;
-// Progress is a largest distance lower by this share, or as many patches fewer beyond tolerance.
+// Progress is a largest distance lower by this share, or as many patches fewer known to exceed it.
 constexpr double least_progress = 0.1;
 
 double now()
@@ -34,6 +35,7 @@ RefinementRound describe(const Trial& trial, double seconds)
     round.unknowns = trial.fit.summary.unknowns;
     round.rms = trial.fit.summary.rounds.back().rms;
     round.distance = {std::max(trial.distance(), trial.bound.lower()), trial.bound.upper()};
+    round.exceeding = trial.exceeding();
     round.beyond = trial.beyond();
     round.seconds = seconds;
     return round;
@@ -54,7 +56,7 @@ bool stalled(const std::vector<RefinementRound>& rounds, std::size_t first, std:
                (1.0 - least_progress) * value(*std::min_element(begin, last, less));
     };
     return !falls([](const RefinementRound& r) { return r.distance.lower; }) &&
-           !falls([](const RefinementRound& r) { return double(r.beyond); });
+           !falls([](const RefinementRound& r) { return double(r.exceeding); });
 }
 
 // Whether the last round is nearer to the tolerance than the best one so far.
@@ -66,20 +68,26 @@ bool better(const std::vector<RefinementRound>& rounds, Index best)
 
 // Cuts the domain of a trial where it must be. \return why not, if it cannot be.
 Result<std::optional<RefinementEnd>> cut(const ManifoldMesh& source, const Trial& trial,
-                                         Index max_patches, QuadDomain& domain, Context& context)
+                                         const ToleranceOptions& options, QuadDomain& domain,
+                                         Context& context)
 {
     using End = std::optional<RefinementEnd>;
-    const std::vector<char> marks = choose_marks(trial, max_patches);
+    const std::vector<char> marks = choose_marks(trial, options.max_patches);
     if (marks.empty())
         return End(RefinementEnd::patch_limit);
     Result<RefinedDomain> refined = refine_domain(source, trial.domain, marks, context);
-    if (refined) {
-        domain = std::move(refined->domain);
-        return End();
-    }
-    if (refined.error().code == ErrorCode::layout_failed)
+    if (!refined && refined.error().code == ErrorCode::layout_failed)
         return End(RefinementEnd::quality_limit);
-    return refined.error();
+    if (!refined)
+        return refined.error();
+    domain = std::move(refined->domain);
+    if (options.keep_edges)
+        return End();
+    Result<QuadDomain> straight = straighten_domain(std::move(domain), context);
+    if (!straight)
+        return straight.error();
+    domain = std::move(*straight);
+    return End();
 }
 
 } // namespace
@@ -144,7 +152,7 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
             end = RefinementEnd::stalled;
         } else {
             Result<std::optional<RefinementEnd>> failed =
-                cut(source, trial, options.max_patches, domain, context);
+                cut(source, trial, options, domain, context);
             if (!failed)
                 return failed.error();
             end = *failed;

@@ -54,6 +54,12 @@ void measure_samples(const SurfaceSampleSet& samples, const std::vector<std::siz
 
 } // namespace
 
+Index Trial::exceeding() const
+{
+    return static_cast<Index>(std::count_if(patches.begin(), patches.end(),
+                                            [](const PatchError& p) { return p.exceeds; }));
+}
+
 Index Trial::beyond() const
 {
     return static_cast<Index>(std::count_if(patches.begin(), patches.end(),

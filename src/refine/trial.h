@@ -25,6 +25,7 @@ struct Trial {
     HausdorffBound bound;
     std::vector<PatchError> patches;
 
+    Index exceeding() const;
     Index beyond() const;
     //! The largest distance known of.
     double distance() const;
