@@ -3,16 +3,19 @@
 """Converts random closed surfaces and writes docs/results/stress.md.
 
     scripts/stress.py [--count 500] [--first-seed 0] [--jobs 2] [--binary FILE] [--limit 300]
-                      [--fewest 300] [--most 30000] [--keep FOLDER]
+                      [--fewest 300] [--most 30000] [--keep FOLDER] [--results FILE] [--minutes M]
     scripts/stress.py --make SEED FILE.off
 
 Every mesh follows from its seed and the two sizes (see random_mesh.py). Each run must end within
 the limit with exit code 0 in a valid solid of the genus of the mesh, exact at its joins and near
 the mesh. A mesh that fails is kept with the command that repeats it. Exit code 0 when all are sound.
+With --results each result is added to a file, and a seed that is in it is not run again, so that a
+long campaign can be cut in parts (--minutes); the report is always about all results there are.
 Needs numpy (Debian: python3-numpy).
 """
 
 import argparse
+import json
 import shlex
 import sys
 import tempfile
@@ -91,14 +94,14 @@ def report(results, arguments):
     classes = Counter(r["class"] for r in results)
     sound = [r for r in results if r["class"].startswith("sound")]
     bad = [r for r in results if not r["class"].startswith("sound")]
-    last = arguments.first_seed + len(results) - 1
+    seeds = sorted(r["seed"] for r in results)
     lines = [
         "# Random stress",
         "",
         "Written by `scripts/stress.py`: closed surfaces of genus 0 to 8 made from seeds (level sets, cubes;",
         "stretched, displaced, thinned out to slivers, with needles of 1:1000 and caps, turned, scaled by 1e-6",
         "to 1e6, far from the origin) through the whole command.",
-        f"Seeds {arguments.first_seed} to {last}, {arguments.fewest} to {arguments.most} triangles before needles and caps, "
+        f"{len(seeds)} seeds of {seeds[0]} to {seeds[-1]}, {arguments.fewest} to {arguments.most} triangles before needles and caps, "
         f"at most {arguments.limit:.0f} s of one processor each.",
         "",
     ]
@@ -147,6 +150,8 @@ def main():
     parser.add_argument("--most", type=int, default=30000, help="triangles")
     parser.add_argument("--keep", type=Path, help="folder for meshes that fail (default: a new one)")
     parser.add_argument("--make", nargs=2, metavar=("SEED", "FILE"), help="only write a mesh")
+    parser.add_argument("--results", type=Path, help="JSON lines, read first and added to")
+    parser.add_argument("--minutes", type=float, help="no new seed after this time")
     parser.add_argument("--report", type=Path, default=verdict.ROOT / "docs/results/stress.md")
     arguments = parser.parse_args()
     binary = verdict.find_binary(arguments.binary)
@@ -160,15 +165,27 @@ def main():
     keep.mkdir(parents=True, exist_ok=True)
     start = time.monotonic()
     results = []
+    if arguments.results and arguments.results.exists():
+        results = [json.loads(line) for line in arguments.results.read_text().splitlines()]
+    known = {r["seed"] for r in results}
+    seeds = range(arguments.first_seed, arguments.first_seed + arguments.count)
     with ProcessPoolExecutor(arguments.jobs) as pool:
-        seeds = range(arguments.first_seed, arguments.first_seed + arguments.count)
         tasks = [
             pool.submit(trial, s, binary, keep, arguments.fewest, arguments.most, arguments.limit)
             for s in seeds
+            if s not in known
         ]
         for task in as_completed(tasks):
+            if task.cancelled():
+                continue
             r = task.result()
             results.append(r)
+            if arguments.results:
+                with arguments.results.open("a") as lines:
+                    lines.write(json.dumps(r) + "\n")
+            if arguments.minutes and time.monotonic() - start > 60 * arguments.minutes:
+                for other in tasks:
+                    other.cancel()
             numbers = f"rms {100 * r['rms']:.3f} %, max {100 * r['max']:.2f} %" if "rms" in r else ""
             print(
                 f"{r['seed']:5} {r['class']:12} {r['faces']:6} faces, genus {r['genus']}, "

@@ -56,7 +56,8 @@ inline Vec3 edge_point(const ManifoldMesh& mesh, Index edge, double t)
 
 //! Removes detours that hold nothing: an edge crossed forth and at once back, and edges at an end
 //! vertex crossed right after leaving it. What stays is the same path up to a motion over the
-//! surface that passes no vertex, so reduced paths that did not cross still do not.
+//! surface that passes no vertex, so reduced paths that did not cross still do not. Of several
+//! crossings that one is left of, the place of the one nearest to the start of the edge is kept.
 void reduce(const ManifoldMesh& mesh, SurfacePath& path);
 
 //! Length of the polyline.

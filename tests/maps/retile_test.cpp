@@ -191,5 +191,59 @@ TEST(SurfacePath, reduction_removes_detours_that_hold_no_vertex)
     EXPECT_EQ(turned.nodes.size(), 1u);
 }
 
+TEST(SurfacePath, reduction_keeps_paths_side_by_side_in_order_whichever_way_they_run)
+{
+    // Two paths side by side cross an edge forth, back and forth again, in the bends of an S.
+    const ManifoldMesh mesh = icosphere(1);
+    const PathNode crossing = crossing_path(mesh, 0, 0.5).nodes[0];
+    const auto s_shaped = [&](const std::array<double, 3>& t, bool turned) {
+        SurfacePath path = crossing_path(mesh, 0, 0.5);
+        path.nodes.clear();
+        for (std::size_t i = 0; i < 3; ++i) {
+            PathNode node = crossing;
+            if ((i == 1) != turned)
+                node.halfedge = mesh.twin(crossing.halfedge);
+            node.t = t[turned ? 2 - i : i];
+            path.nodes.push_back(node);
+        }
+        if (turned)
+            std::swap(path.a, path.b);
+        reduce(mesh, path);
+        EXPECT_EQ(path.nodes.size(), 1u);
+        return path.nodes[0].t;
+    };
+    const std::array<double, 3> outer{0.1, 0.5, 0.6}, inner{0.2, 0.4, 0.7};
+    for (const bool outer_turned : {false, true})
+        for (const bool inner_turned : {false, true})
+            EXPECT_LT(s_shaped(outer, outer_turned), s_shaped(inner, inner_turned))
+                << outer_turned << inner_turned;
+}
+
+TEST(SurfacePath, reduction_sees_that_a_detour_within_a_detour_is_of_the_same_edge)
+{
+    const ManifoldMesh mesh = icosphere(1);
+    SurfacePath path = crossing_path(mesh, 0, 0.5);
+    PathNode forth = path.nodes[0], back = forth, aside = forth, aside_back = forth;
+    back.halfedge = mesh.twin(forth.halfedge);
+    // Back in the first face, the path leaves it by another edge and returns.
+    aside.halfedge = mesh.next(forth.halfedge);
+    aside_back.halfedge = mesh.twin(aside.halfedge);
+    forth.t = 0.3;
+    back.t = 0.2;
+    PathNode again = forth;
+    again.t = 0.4;
+    for (const bool turned : {false, true}) {
+        path.nodes = {forth, back, aside, aside_back, again};
+        if (turned) {
+            std::reverse(path.nodes.begin(), path.nodes.end());
+            for (PathNode& n : path.nodes)
+                n.halfedge = mesh.twin(n.halfedge);
+        }
+        reduce(mesh, path);
+        ASSERT_EQ(path.nodes.size(), 1u);
+        EXPECT_EQ(path.nodes[0].t, 0.2);
+    }
+}
+
 } // namespace
 } // namespace bot2nurbs::fixtures
