@@ -10,11 +10,13 @@ Every mesh follows from its seed and the two sizes (see random_mesh.py). Each ru
 the limit with exit code 0 in a valid solid of the genus of the mesh, exact at its joins and near
 the mesh. A mesh that fails is kept with the command that repeats it. Exit code 0 when all are sound.
 With --results each result is added to a file, and a seed that is in it is not run again, so that a
-long campaign can be cut in parts (--minutes); the report is always about all results there are.
+long campaign can be cut in parts (--minutes); the report is always about all results there are. The
+file is of one binary with one choice of sizes and limit: another one is refused.
 Needs numpy (Debian: python3-numpy).
 """
 
 import argparse
+import hashlib
 import json
 import shlex
 import sys
@@ -151,7 +153,7 @@ def main():
     parser.add_argument("--keep", type=Path, help="folder for meshes that fail (default: a new one)")
     parser.add_argument("--make", nargs=2, metavar=("SEED", "FILE"), help="only write a mesh")
     parser.add_argument("--results", type=Path, help="JSON lines, read first and added to")
-    parser.add_argument("--minutes", type=float, help="no new seed after this time")
+    parser.add_argument("--minutes", type=float, help="no more seeds are begun soon after this time")
     parser.add_argument("--report", type=Path, default=verdict.ROOT / "docs/results/stress.md")
     arguments = parser.parse_args()
     binary = verdict.find_binary(arguments.binary)
@@ -165,8 +167,20 @@ def main():
     keep.mkdir(parents=True, exist_ok=True)
     start = time.monotonic()
     results = []
+    campaign = {
+        "binary": hashlib.sha256(Path(binary).read_bytes()).hexdigest(),
+        "sizes": [arguments.fewest, arguments.most],
+        "limit": arguments.limit,
+    }
     if arguments.results and arguments.results.exists():
-        results = [json.loads(line) for line in arguments.results.read_text().splitlines()]
+        # A line that was cut off is left out, its seed runs again.
+        lines = [x for x in arguments.results.read_text().split("\n")[:-1]]
+        if lines and json.loads(lines[0]) != campaign:
+            sys.exit(f"stress.py: {arguments.results} is of another binary, other sizes or another limit")
+        results = [json.loads(line) for line in lines[1:]]
+        arguments.results.write_text("".join(line + "\n" for line in lines))
+    if arguments.results and not (arguments.results.exists() and arguments.results.stat().st_size):
+        arguments.results.write_text(json.dumps(campaign) + "\n")
     known = {r["seed"] for r in results}
     seeds = range(arguments.first_seed, arguments.first_seed + arguments.count)
     with ProcessPoolExecutor(arguments.jobs) as pool:

@@ -59,11 +59,11 @@ struct FitSummary {
     double condition = 0.0;     //!< Estimate for the (scaled) normal matrix.
     bool used_fallback = false; //!< The augmented or QR solve was needed.
     std::string termination;    //!< "stalled" or "round_limit".
-    //! Patches that face away from the normals of their samples at one of nine places on each of
-    //! their Bezier pieces.
+    //! Patches that face away from the normals of their samples at any of nine places on any of
+    //! their Bezier pieces; without normals, away from the surface of the first round.
     Index folded_patches = 0;
     //! Per patch: the smallest Jacobian at these places, the part of du x dv along the samples'
-    //! normal over the mean length of du x dv; below zero in folds, 1 where there are no normals.
+    //! normal over the mean length of du x dv; below zero in folds.
     std::vector<double> smallest_jacobians;
 };
 

@@ -202,13 +202,13 @@ std::vector<FitRow> FitLoop::rows_at(const State& state, const std::vector<doubl
     return rows;
 }
 
-std::vector<double> FitLoop::distance_factors(const State& state) const
+std::vector<double> FitLoop::distance_factors(const State& state, double mu) const
 {
     std::vector<double> factors(points.size(), 1.0);
     if (state.feet.empty())
         return factors;
     // Point-distance rows would hold back what slides in the plane as well.
-    if (options_.rows == DistanceRows::tangent)
+    if (mu < 1.0)
         for (std::size_t i = 0; i < points.size(); ++i)
             if (in_plane_[i])
                 factors[i] = plane_emphasis;
@@ -336,7 +336,7 @@ Status FitLoop::raise_to_noise(State& state)
 Status FitLoop::next_round(State& state, double& mu, bool& stuck)
 {
     scale_fairness(summary.rounds.back().rms > options_.noise ? fairness_decay : 1.0);
-    const std::vector<double> factors = distance_factors(state);
+    const std::vector<double> factors = distance_factors(state, mu);
     for (int answers = 0;;) {
         NormalSystem::Solution solution = solve(state, rows_at(state, factors), mu);
         if (context_.cancelled())

@@ -55,8 +55,9 @@ private:
     void find_feet(State& state) const;
     //! Rows of all samples, as the fold response wants them.
     std::vector<FitRow> rows_at(const State& state, const std::vector<double>& factors) const;
-    //! What the distances make of the weights: more with emphasis, less where robust.
-    std::vector<double> distance_factors(const State& state) const;
+    //! What the distances make of the weights: more with emphasis, less where robust; and more in
+    //! plane quads while rows are not those of point distances.
+    std::vector<double> distance_factors(const State& state, double mu) const;
     double objective(const State& state, const std::vector<double>& factors) const;
     //! First round: halfway (geometrically) between weighing quads by area and alike. Weights by
     //! area alone let a large quad follow its samples at the cost of a small one beside it, whose

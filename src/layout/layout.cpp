@@ -25,6 +25,8 @@ constexpr double surplus = 1.2;
 // where it has so many times fewer faces.
 constexpr double proxy_resolution = 0.2;
 constexpr double proxy_saving = 2.5;
+// Beside curves it leaves less room for good patches: there it must save more.
+constexpr double proxy_saving_at_curves = 6.0;
 // Rounds of Lloyd's relaxation; more move sites by less than a mesh edge.
 constexpr int relaxation_rounds = 8;
 // How many sites to place inside so that about `patches` quads come out.
@@ -48,9 +50,11 @@ SizeMetric metric_of(const LayoutLevel& level, double width)
     return {level.density(), width * width};
 }
 
-// What the constraints ask of a complex on a level.
+// What a level and the constraints say about a complex on it.
 void bind(PatchComplex& complex, const LayoutLevel& level, const CarrierConstraints& constraints)
 {
+    for (const auto& [v, angle] : level.boundary_angles)
+        complex.set_boundary_angle(v, angle);
     for (const Index s : constraints.sites)
         level.for_each_copy(s, [&complex](Index v) { complex.pin(v); });
     for (const auto& [s, quads] : constraints.valences)
@@ -227,7 +231,8 @@ Result<std::optional<Proxy>> make_proxy(const Ground& ground, Index patches, Con
 {
     const double cells =
         static_cast<double>(patches) * 4.0 / (1.732 * proxy_resolution * proxy_resolution);
-    if (!(static_cast<double>(ground.carrier->mesh.face_count()) > proxy_saving * cells))
+    const double saving = ground.level->curves().empty() ? proxy_saving : proxy_saving_at_curves;
+    if (!(static_cast<double>(ground.carrier->mesh.face_count()) > saving * cells))
         return std::optional<Proxy>();
     Result<Proxy> proxy = Proxy::build(*ground.level, proxy_resolution * ground.width, context);
     if (!proxy)

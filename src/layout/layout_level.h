@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace bot2nurbs {
@@ -28,6 +29,9 @@ public:
     std::vector<Index> required;
     //! Pairs of names whose tiles must not be neighbours.
     std::vector<std::array<Index, 2>> apart;
+    //! Of a mesh that stands for a finer one: the angle of that at each boundary vertex. The chords
+    //! of a coarse mesh make corners where a curve runs smoothly on.
+    std::vector<std::pair<Index, double>> boundary_angles;
 
     //! Makes patches small where curves are short: no wider than the distance between the ends of a
     //! curve, and growing with the distance from it no faster than a given slope. `unit` is the

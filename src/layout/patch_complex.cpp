@@ -3,8 +3,27 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace bot2nurbs {
+
+double boundary_angle(const ManifoldMesh& mesh, Index vertex)
+{
+    double sum = 0.0;
+    for (Index h = mesh.halfedge_at(vertex); h != invalid_index;
+         h = mesh.twin(ManifoldMesh::prev(h))) {
+        const Vec3 p = mesh.position(mesh.to(h)) - mesh.position(vertex);
+        const Vec3 q = mesh.position(mesh.from(ManifoldMesh::prev(h))) - mesh.position(vertex);
+        sum += std::atan2(norm(cross(p, q)), dot(p, q));
+    }
+    return sum;
+}
+
+double PatchComplex::boundary_angle(Index mesh_vertex) const
+{
+    const auto said = angle_.find(mesh_vertex);
+    return said != angle_.end() ? said->second : bot2nurbs::boundary_angle(*mesh_, mesh_vertex);
+}
 
 Index PatchComplex::add_path(SurfacePath geometry)
 {

@@ -13,6 +13,9 @@
 
 namespace bot2nurbs {
 
+//! Angle of a mesh at a boundary vertex: the sum over its faces.
+double boundary_angle(const ManifoldMesh& mesh, Index vertex);
+
 //! A division of a mesh into disks by non-crossing paths: K_tri while all faces have three sides, K
 //! once all have four. The boundary of an open mesh consists of paths, each with one face. Changed
 //! only by exchanging paths inside a disk: a change is planned, which either succeeds or not and
@@ -87,6 +90,10 @@ public:
     //! Wanted number of faces of K at a mesh vertex inside; a hint.
     void want(Index mesh_vertex, Index quads) { wanted_[mesh_vertex] = quads; }
     const std::map<Index, Index>& wanted() const { return wanted_; }
+    //! Says what the angle at a boundary vertex is, where it is not that of the mesh.
+    void set_boundary_angle(Index mesh_vertex, double angle) { angle_[mesh_vertex] = angle; }
+    //! The angle of the surface at a boundary vertex.
+    double boundary_angle(Index mesh_vertex) const;
     void freeze(Index face) { faces_[face].frozen = true; }
     //! A path between two mesh vertices, if there is one.
     std::optional<Index> path_between(Index a, Index b) const;
@@ -137,6 +144,7 @@ private:
     std::set<Index> pinned_;
     std::set<std::pair<Index, Index>> apart_;
     std::map<Index, Index> wanted_;
+    std::map<Index, double> angle_; // Boundary vertices where it is not that of the mesh.
 };
 
 } // namespace bot2nurbs

@@ -80,6 +80,8 @@ std::vector<Index> spread_sites(const LayoutLevel& level, Index count)
     std::sort(order.begin(), order.end());
     // Of each share the vertex nearest to its centroid.
     std::vector<Index> sites;
+    if (count == 0)
+        return sites;
     double sum = 0.0;
     for (std::size_t begin = 0; begin < order.size();) {
         const double limit =

@@ -10,13 +10,6 @@
 
 namespace bot2nurbs {
 
-namespace {
-
-// Tiles need only be of about one size.
-constexpr int relaxations = 0;
-
-} // namespace
-
 Result<Proxy> Proxy::build(const LayoutLevel& fine, double width, Context& context)
 {
     // Sites in a triangular grid of this width have each sqrt(3) / 2 of its square.
@@ -25,7 +18,6 @@ Result<Proxy> Proxy::build(const LayoutLevel& fine, double width, Context& conte
     plan.inner =
         static_cast<Index>(scaled_area(fine.mesh(), fine.density()) / (0.866 * width * width));
     plan.spread = true;
-    plan.relaxations = relaxations;
     Tiles tiles(fine.mesh(), fine.density());
     place_sites(fine, plan, tiles, context);
     if (context.cancelled())
@@ -76,6 +68,10 @@ Result<Proxy> Proxy::build(const LayoutLevel& fine, double width, Context& conte
                                                  std::move(density), std::move(curves));
     proxy.level_->required = fine.required;
     proxy.level_->apart = fine.apart;
+    for (Index v = 0; v < proxy.mesh_->vertex_count(); ++v)
+        if (proxy.mesh_->is_boundary_vertex(v))
+            proxy.level_->boundary_angles.emplace_back(
+                v, boundary_angle(fine.mesh(), proxy.fine_vertex_[v]));
     return proxy;
 }
 

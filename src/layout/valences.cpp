@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "layout/valences.h"
 
-#include <cmath>
-
 namespace bot2nurbs {
 
 namespace {
@@ -25,18 +23,6 @@ constexpr double degenerate_cost = 10.0;
 // Corners wider than this many right angles count as flat.
 constexpr double flat_corner = 1.7;
 
-// Angle of the mesh at a boundary vertex.
-double boundary_angle(const ManifoldMesh& mesh, Index v)
-{
-    double sum = 0.0;
-    for (Index h = mesh.halfedge_at(v); h != invalid_index; h = mesh.twin(ManifoldMesh::prev(h))) {
-        const Vec3 p = mesh.position(mesh.to(h)) - mesh.position(v);
-        const Vec3 q = mesh.position(mesh.from(ManifoldMesh::prev(h))) - mesh.position(v);
-        sum += std::atan2(norm(cross(p, q)), dot(p, q));
-    }
-    return sum;
-}
-
 } // namespace
 
 Valences::Valences(const PatchComplex& complex, Index sides)
@@ -51,7 +37,7 @@ Valences::Valences(const PatchComplex& complex, Index sides)
             ++count_[p.geometry.a], ++count_[p.geometry.b];
     for (Index v = 0; v < count_.size(); ++v)
         if (count_[v] > 0 && complex.mesh().is_boundary_vertex(v))
-            angle_[v] = std::max(boundary_angle(complex.mesh(), v) / unit, 0.5);
+            angle_[v] = std::max(complex.boundary_angle(v) / unit, 0.5);
 }
 
 void Valences::move(Index from, Index to)

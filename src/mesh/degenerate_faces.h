@@ -12,7 +12,8 @@ namespace bot2nurbs {
 //! True when the triangle is no thicker than `distance`: its height over its longest side.
 bool has_no_area(const Vec3& a, const Vec3& b, const Vec3& c, double distance);
 
-//! Triangles whose set of vertices an earlier triangle has already, ascending. Cost O(F log F).
+//! Triangles whose set of vertices an earlier triangle has already, ascending. Cost O(F log F +
+//! V). \pre indices are those of V vertices
 std::vector<Index> duplicate_faces(const std::vector<std::array<Index, 3>>& triangles);
 
 struct DegenerateRemoval {

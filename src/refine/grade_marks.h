@@ -15,7 +15,7 @@ namespace bot2nurbs {
 //! So at every vertex of the given quads, and where this marks more edges, an edge is marked when
 //! it is more than three times as long as the longer of those opposite to it, of which marked ones
 //! count half. Vertices on boundaries and creases are left, as patches end there.
-//! `lengths` and `marks` have an entry per edge. Cost O(1) a vertex and mark.
+//! `lengths` and `marks` have an entry per edge. Cost O(valence) a vertex and mark.
 void grade_marks(const QuadComplex& complex, const std::vector<double>& lengths,
                  const std::vector<Index>& quads, std::vector<char>& marks);
 

@@ -52,8 +52,10 @@ bool stalled(const std::vector<RefinementRound>& rounds, std::size_t first, std:
         const auto less = [&](const RefinementRound& a, const RefinementRound& b) {
             return value(a) < value(b);
         };
+        const double before = value(*std::min_element(begin, last, less));
         return value(*std::min_element(last, rounds.end(), less)) <=
-               (1.0 - least_progress) * value(*std::min_element(begin, last, less));
+                   (1.0 - least_progress) * before &&
+               before > 0.0;
     };
     return !falls([](const RefinementRound& r) { return r.distance.lower; }) &&
            !falls([](const RefinementRound& r) { return double(r.exceeding); });
@@ -83,7 +85,7 @@ Result<std::optional<RefinementEnd>> cut(const ManifoldMesh& source, const Trial
     domain = std::move(refined->domain);
     if (options.keep_edges)
         return End();
-    Result<QuadDomain> straight = straighten_domain(std::move(domain), context);
+    Result<QuadDomain> straight = straighten_domain(source, std::move(domain), context);
     if (!straight)
         return straight.error();
     domain = std::move(*straight);

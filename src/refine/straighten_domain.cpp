@@ -22,9 +22,8 @@ bool runs_along_edges(const SurfacePath& path)
                        [](const PathNode& node) { return node.is_vertex(); });
 }
 
-} // namespace
-
-Result<QuadDomain> straighten_domain(QuadDomain domain, Context& context)
+// The domain with its edges drawn anew.
+Result<QuadDomain> straightened(QuadDomain domain, Context& context)
 {
     const QuadComplex& complex = domain.complex;
     PatchComplex patches(domain.carrier.mesh);
@@ -45,6 +44,7 @@ Result<QuadDomain> straighten_domain(QuadDomain domain, Context& context)
     }
     if (Status failed = straighten_paths(patches, passes, context))
         return *failed;
+    // The numbers of paths have changed, but no two edges of a domain have the same ends.
     std::map<std::pair<Index, Index>, Index> edge_between;
     for (Index e = 0; e < complex.edge_count(); ++e)
         edge_between[std::minmax(domain.vertices[domain.edges[e].a],
@@ -61,6 +61,22 @@ Result<QuadDomain> straighten_domain(QuadDomain domain, Context& context)
         edge.path = path_points(domain.carrier.mesh, walked);
     }
     return domain;
+}
+
+} // namespace
+
+Result<QuadDomain> straighten_domain(const ManifoldMesh& source, QuadDomain domain,
+                                     Context& context)
+{
+    Result<QuadDomain> straight = straightened(domain, context);
+    if (!straight)
+        return straight;
+    const Result<std::vector<QuadChart>> charts = compute_charts(source, *straight, context);
+    if (charts)
+        return straight;
+    if (charts.error().code == ErrorCode::layout_failed)
+        return domain;
+    return charts.error();
 }
 
 } // namespace bot2nurbs

@@ -34,7 +34,7 @@ PatchComplex triangles_on(const LayoutLevel& level, Index sites)
     Context context;
     place_sites(level, plan, tiles, context);
     auto complex = build_base_complex(tiles, context);
-    EXPECT_TRUE(complex.ok());
+    EXPECT_TRUE(complex.ok()) << complex.error().message;
     straighten_triangles(*complex, context);
     return std::move(*complex);
 }
