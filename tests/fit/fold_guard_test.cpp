@@ -48,6 +48,23 @@ TEST(FoldGuard, counts_folds_where_they_are)
     EXPECT_EQ(more_folded(folds, none), std::vector<Index>{});
 }
 
+TEST(FoldGuard, jacobians_are_one_on_a_regular_grid_and_below_zero_in_a_fold)
+{
+    FlatGrid grid;
+    const SurfaceSampleSet samples =
+        sample_target({grid.domain, [](const Vec3& p) { return p; }, {}, 1.0});
+    const FoldGuard guard(grid.domain.complex.quad_count(), samples.normals, samples.domain);
+    const Context context;
+    for (const double jacobian : guard.smallest_jacobians(grid.surface, context))
+        EXPECT_NEAR(jacobian, 1.0, 1e-9);
+    SplineSurface folded = grid.surface;
+    folded.bezier()[SplineNetwork::row(7, 6, 6)] =
+        2.0 * grid.surface.bezier(7, 9, 6) - grid.surface.bezier(7, 6, 6);
+    const std::vector<double> jacobians = guard.smallest_jacobians(folded, context);
+    for (Index q = 0; q < jacobians.size(); ++q)
+        EXPECT_EQ(jacobians[q] < 0.0, q == 7) << q;
+}
+
 TEST(FoldResponse, shortens_moves_in_its_quads_and_nowhere_far_from_them)
 {
     const FlatGrid grid;
