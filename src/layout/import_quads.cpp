@@ -10,7 +10,7 @@
 #include "layout/quad_boundary.h"
 #include "layout/quad_names.h"
 #include "layout/quad_places.h"
-#include "layout/straighten_paths.h"
+#include "layout/straighten_domain.h"
 #include "mesh/boundary_loops.h"
 
 #include <algorithm>
@@ -31,23 +31,12 @@ std::string text(Index i)
     return std::to_string(i);
 }
 
-std::pair<Index, Index> sorted(Index a, Index b)
-{
-    return {std::min(a, b), std::max(a, b)};
-}
-
 // The topology of one surface, in words.
 std::string topology_text(int euler, Index loops)
 {
     const int genus = (2 - euler - static_cast<int>(loops)) / 2;
     return "genus " + std::to_string(genus) + " and " + text(loops) +
            (loops == 1 ? " boundary loop" : " boundary loops");
-}
-
-bool runs_along_edges(const SurfacePath& path)
-{
-    return std::all_of(path.nodes.begin(), path.nodes.end(),
-                       [](const PathNode& n) { return n.is_vertex(); });
 }
 
 class Importer {
@@ -218,48 +207,17 @@ private:
         return {};
     }
 
-    Result<QuadImport> finish(QuadCarrier board, std::vector<SurfacePath> paths,
+    Result<QuadImport> finish(QuadCarrier board, const std::vector<SurfacePath>& paths,
                               const CurveMatch& match)
     {
-        PatchComplex patches(board.carrier.mesh);
-        for (SurfacePath& path : paths)
-            patches.add_path(std::move(path));
-        for (Index q = 0; q < complex_.quad_count(); ++q) {
-            std::vector<PatchComplex::Side> sides;
-            for (Index h = 4 * q; h < 4 * q + 4; ++h)
-                sides.push_back(
-                    {complex_.edge(h), complex_.halfedge_of_edge(complex_.edge(h)) != h});
-            patches.add_face(std::move(sides));
-        }
-        // What runs along mesh edges is straight, or a curve that must stay.
-        for (Index e = 0; e < complex_.edge_count(); ++e)
-            if (runs_along_edges(patches.paths()[e].geometry))
-                patches.mark(e, mark_of(FeatureKind::smooth_seam));
-        if (Status failed = straighten_paths(patches, straightening_passes, context_))
-            return *failed;
-
         QuadImport result;
         QuadDomain& domain = result.domain;
         domain.edges.resize(complex_.edge_count());
-        std::vector<std::pair<std::pair<Index, Index>, Index>> by_ends;
         for (Index e = 0; e < complex_.edge_count(); ++e) {
             const Index h = complex_.halfedge_of_edge(e);
-            DomainEdge& edge = domain.edges[e];
-            edge.a = complex_.from(h);
-            edge.b = complex_.to(h);
-            edge.crease = complex_.is_crease(e);
-            result.crease_edges += edge.crease;
-            by_ends.push_back({sorted(board.vertices[edge.a], board.vertices[edge.b]), e});
-        }
-        std::sort(by_ends.begin(), by_ends.end());
-        for (const PatchComplex::Path& p : patches.paths()) {
-            SurfacePath path = p.geometry;
-            const std::pair<Index, Index> ends = sorted(path.a, path.b);
-            const Index e =
-                std::lower_bound(by_ends.begin(), by_ends.end(), std::pair(ends, Index{0}))->second;
-            if (path.a != board.vertices[domain.edges[e].a])
-                path = turned(board.carrier.mesh, path);
-            domain.edges[e].path = path_points(board.carrier.mesh, path);
+            domain.edges[e] = {complex_.from(h), complex_.to(h),
+                               path_points(board.carrier.mesh, paths[e]), complex_.is_crease(e)};
+            result.crease_edges += complex_.is_crease(e);
         }
         for (Index v = 0; v < board.vertices.size(); ++v) {
             const double moved =
@@ -275,17 +233,8 @@ private:
         domain.carrier = std::move(board.carrier);
         domain.complex = std::move(complex_);
         domain.origin = "quads";
-        return result;
-    }
-
-    static SurfacePath turned(const ManifoldMesh& mesh, const SurfacePath& path)
-    {
-        const PathSide walk{&path, true};
-        SurfacePath result;
-        result.a = walk.start();
-        result.b = walk.end();
-        for (std::size_t i = 0; i < walk.node_count(); ++i)
-            result.nodes.push_back(walk.node(mesh, i));
+        if (Status failed = straighten_domain(domain, straightening_passes, context_))
+            return *failed;
         return result;
     }
 

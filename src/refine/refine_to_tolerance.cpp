@@ -2,8 +2,8 @@
 #include "bot2nurbs/refine_to_tolerance.h"
 
 #include "bot2nurbs/refine_domain.h"
+#include "layout/straighten_domain.h"
 #include "refine/choose_marks.h"
-#include "refine/straighten_domain.h"
 #include "refine/trial.h"
 
 #include <algorithm>
@@ -19,6 +19,8 @@ namespace {
 // Rounds without progress before refinement is given up: a place where a crease of the source is
 // rounded may get worse before it gets better. While other rows are left to try, fewer.
 constexpr std::size_t patience = 3, tangent_patience = 2;
+// Of the edges of a domain after a cut. A second pass makes no fewer patches.
+constexpr int straightening_passes = 1;
 // Progress is a largest distance lower by this share, or as many patches fewer known to exceed it.
 constexpr double least_progress = 0.1;
 
@@ -83,12 +85,9 @@ Result<std::optional<RefinementEnd>> cut(const ManifoldMesh& source, const Trial
     if (!refined)
         return refined.error();
     domain = std::move(refined->domain);
-    if (options.keep_edges)
-        return End();
-    Result<QuadDomain> straight = straighten_domain(source, std::move(domain), context);
-    if (!straight)
-        return straight.error();
-    domain = std::move(*straight);
+    if (!options.keep_edges)
+        if (Status stopped = straighten_domain(domain, straightening_passes, context))
+            return *stopped;
     return End();
 }
 
@@ -132,6 +131,10 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
     for (std::optional<RefinementEnd> end; !end;) {
         const double begin = now();
         Result<Trial> made = make_trial(source, std::move(domain), current, context);
+        if (!made && made.error().code == ErrorCode::layout_failed && !result.rounds.empty()) {
+            result.termination = RefinementEnd::quality_limit;
+            break;
+        }
         if (!made)
             return made.error();
         Trial& trial = *made;

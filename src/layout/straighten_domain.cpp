@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "refine/straighten_domain.h"
+#include "layout/straighten_domain.h"
 
 #include "domain/domain_paths.h"
-#include "layout/patch_complex.h"
+#include "layout/curves.h"
 #include "layout/straighten_paths.h"
 
 #include <algorithm>
@@ -13,17 +13,15 @@ namespace bot2nurbs {
 
 namespace {
 
-// A second one makes the layout no better, and each takes a map an edge.
-constexpr int passes = 1;
-
 bool runs_along_edges(const SurfacePath& path)
 {
     return std::all_of(path.nodes.begin(), path.nodes.end(),
-                       [](const PathNode& node) { return node.is_vertex(); });
+                       [](const PathNode& n) { return n.is_vertex(); });
 }
 
-// The domain with its edges drawn anew.
-Result<QuadDomain> straightened(QuadDomain domain, Context& context)
+// A domain as a complex of patches. What runs along carrier edges is straight, or a curve that must
+// stay.
+Result<PatchComplex> patches_of(const QuadDomain& domain)
 {
     const QuadComplex& complex = domain.complex;
     PatchComplex patches(domain.carrier.mesh);
@@ -31,10 +29,10 @@ Result<QuadDomain> straightened(QuadDomain domain, Context& context)
         Result<SurfacePath> path = domain_path(domain, e);
         if (!path)
             return path.error();
-        const bool fixed = complex.is_sharp(e) || runs_along_edges(*path);
+        const bool stays = runs_along_edges(*path);
         const Index p = patches.add_path(std::move(*path));
-        if (fixed)
-            patches.mark(p, 1);
+        if (stays)
+            patches.mark(p, mark_of(FeatureKind::smooth_seam));
     }
     for (Index q = 0; q < complex.quad_count(); ++q) {
         std::vector<PatchComplex::Side> sides;
@@ -42,14 +40,25 @@ Result<QuadDomain> straightened(QuadDomain domain, Context& context)
             sides.push_back({complex.edge(h), complex.from(h) != domain.edges[complex.edge(h)].a});
         patches.add_face(std::move(sides));
     }
-    if (Status failed = straighten_paths(patches, passes, context))
-        return *failed;
-    // The numbers of paths have changed, but no two edges of a domain have the same ends.
+    return patches;
+}
+
+} // namespace
+
+Status straighten_domain(QuadDomain& domain, int passes, Context& context)
+{
+    Result<PatchComplex> patches = patches_of(domain);
+    if (!patches)
+        return patches.error();
+    if (Status failed = straighten_paths(*patches, passes, context))
+        return failed;
+    // Paths have other numbers now, but no two edges of a domain have the same ends.
     std::map<std::pair<Index, Index>, Index> edge_between;
-    for (Index e = 0; e < complex.edge_count(); ++e)
+    for (Index e = 0; e < domain.edges.size(); ++e)
         edge_between[std::minmax(domain.vertices[domain.edges[e].a],
                                  domain.vertices[domain.edges[e].b])] = e;
-    for (const PatchComplex::Path& path : patches.paths()) {
+    const ManifoldMesh& mesh = domain.carrier.mesh;
+    for (const PatchComplex::Path& path : patches->paths()) {
         const SurfacePath& g = path.geometry;
         DomainEdge& edge = domain.edges[edge_between.at(std::minmax(g.a, g.b))];
         const PathSide walk{&g, g.a != domain.vertices[edge.a]};
@@ -57,26 +66,10 @@ Result<QuadDomain> straightened(QuadDomain domain, Context& context)
         walked.a = walk.start();
         walked.b = walk.end();
         for (std::size_t i = 0; i < walk.node_count(); ++i)
-            walked.nodes.push_back(walk.node(domain.carrier.mesh, i));
-        edge.path = path_points(domain.carrier.mesh, walked);
+            walked.nodes.push_back(walk.node(mesh, i));
+        edge.path = path_points(mesh, walked);
     }
-    return domain;
-}
-
-} // namespace
-
-Result<QuadDomain> straighten_domain(const ManifoldMesh& source, QuadDomain domain,
-                                     Context& context)
-{
-    Result<QuadDomain> straight = straightened(domain, context);
-    if (!straight)
-        return straight;
-    const Result<std::vector<QuadChart>> charts = compute_charts(source, *straight, context);
-    if (charts)
-        return straight;
-    if (charts.error().code == ErrorCode::layout_failed)
-        return domain;
-    return charts.error();
+    return {};
 }
 
 } // namespace bot2nurbs
