@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "convert/component_tolerance.h"
 #include "convert_fixtures.h"
 
 #include <chrono>
@@ -38,6 +39,19 @@ TEST_F(ConvertTest, a_supplied_domain_becomes_a_solid_in_every_format)
         EXPECT_EQ(file.bytes, std::filesystem::file_size(file.path));
     EXPECT_EQ(read_file(path("a.3dm")).substr(0, 14), "3D Geometry Fi");
     EXPECT_EQ(read_file(path("a.step")).substr(0, 12), "ISO-10303-21");
+}
+
+TEST(ToleranceOptions, edges_that_someone_drew_are_kept)
+{
+    const auto keeps = [](auto change) {
+        ConvertOptions options;
+        change(options);
+        return tolerance_options(options, 1.0).keep_edges;
+    };
+    EXPECT_FALSE(keeps([](ConvertOptions&) {}));
+    EXPECT_TRUE(keeps([](ConvertOptions& o) { o.domain_in = "domain.json"; }));
+    EXPECT_TRUE(keeps([](ConvertOptions& o) { o.quads = "quads.obj"; }));
+    EXPECT_TRUE(keeps([](ConvertOptions& o) { o.cage = true; }));
 }
 
 TEST_F(ConvertTest, a_tolerance_refines_a_supplied_domain_and_the_report_proves_it)

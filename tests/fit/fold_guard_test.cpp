@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace bot2nurbs::test {
 namespace {
 
@@ -63,6 +65,48 @@ TEST(FoldGuard, jacobians_are_one_on_a_regular_grid_and_below_zero_in_a_fold)
     const std::vector<double> jacobians = guard.smallest_jacobians(folded, context);
     for (Index q = 0; q < jacobians.size(); ++q)
         EXPECT_EQ(jacobians[q] < 0.0, q == 7) << q;
+}
+
+//! A flat grid of patches of which the middle column is narrow, its parameters straight.
+FitSummary fit_of_grid_with_narrow_column(double width)
+{
+    const auto place = [width](double x) {
+        const double middle = across / 2;
+        return std::min(x, middle) + width * std::clamp(x - middle, 0.0, 1.0) +
+               std::max(0.0, x - middle - 1.0);
+    };
+    const fixtures::Domain domain = fixtures::disk_grid(across, along);
+    SurfaceSampleSet samples = sample_target({domain,
+                                              [&](const Vec3& p) {
+                                                  return Vec3{place(p.x), p.y, 0.0};
+                                              },
+                                              {},
+                                              1.0});
+    const auto network = build_spline_network(domain.complex, SplineScheme::peters);
+    Context context;
+    return fit_network(*network, samples, {}, context)->summary;
+}
+
+// Weighed by area in the first round they fold at a fifth.
+TEST(FoldGuard, patches_do_not_fold_beside_others_five_times_as_wide)
+{
+    for (const double width : {0.2, 0.3, 1.0}) {
+        const FitSummary summary = fit_of_grid_with_narrow_column(width);
+        EXPECT_EQ(summary.folded_patches, 0u) << width;
+        for (const double jacobian : summary.smallest_jacobians)
+            EXPECT_GT(jacobian, 0.1) << width;
+    }
+}
+
+TEST(FoldGuard, a_fit_reports_the_patches_that_fold)
+{
+    // A column so narrow that its patches cannot but overshoot.
+    const FitSummary summary = fit_of_grid_with_narrow_column(0.05);
+    EXPECT_GT(summary.folded_patches, 0u);
+    Index below = 0;
+    for (const double jacobian : summary.smallest_jacobians)
+        below += jacobian < 0.0;
+    EXPECT_EQ(summary.folded_patches, below);
 }
 
 TEST(FoldResponse, shortens_moves_in_its_quads_and_nowhere_far_from_them)

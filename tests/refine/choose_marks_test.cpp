@@ -2,10 +2,12 @@
 #include "refine/choose_marks.h"
 
 #include "hand_domains.h"
+#include "mesh_fixtures.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace bot2nurbs {
 namespace {
@@ -57,6 +59,38 @@ TEST(ChooseMarks, every_quad_gets_an_even_number_of_marks)
             sides += marked(trial, marks, q, s);
         EXPECT_EQ(sides % 2, 0) << "quad " << q;
     }
+}
+
+TEST(ChooseMarks, cuts_are_graded)
+{
+    // On a torus drawn out along x patches at its ends are several times as long as those between.
+    QuadDomain domain = test::torus_grid().domain;
+    domain.carrier =
+        CarrierMesh::from_source(fixtures::moved(domain.carrier.mesh, [](const Vec3& p) {
+            return Vec3{std::sinh(3.0 * p.x), p.y, p.z};
+        }));
+    const QuadComplex& complex = domain.complex;
+    const auto length = [&](Index h) {
+        const ManifoldMesh& mesh = domain.carrier.mesh;
+        return norm(mesh.position(domain.vertices[complex.to(h)]) -
+                    mesh.position(domain.vertices[complex.from(h)]));
+    };
+    int graded = 0;
+    for (Index q = 0; q < complex.quad_count(); ++q) {
+        Trial trial = one_beyond(q, {1.0, 1.0});
+        trial.domain = domain;
+        const std::vector<char> marks = choose_marks(trial, 1000);
+        for (Index h = 4 * q; h < 4 * q + 4; ++h) {
+            // The next edge beyond a cut one, straight on across a vertex of four quads.
+            const Index on = complex.next(complex.twin(complex.next(h)));
+            const double half = 0.5 * length(h);
+            if (length(on) > 3.0 * half) {
+                EXPECT_TRUE(marks[complex.edge(on)]) << "quad " << q;
+                ++graded;
+            }
+        }
+    }
+    EXPECT_GT(graded, 0);
 }
 
 TEST(ChooseMarks, patches_far_nearer_than_the_worst_one_are_left)

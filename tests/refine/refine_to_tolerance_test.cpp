@@ -2,6 +2,7 @@
 #include "bot2nurbs/refine_to_tolerance.h"
 
 #include "bot2nurbs/validate_domain.h"
+#include "domain/domain_paths.h"
 #include "hand_domains.h"
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace bot2nurbs {
 namespace {
@@ -62,6 +64,43 @@ TEST(RefineToTolerance, a_torus_of_twelve_patches_is_refined_until_the_bound_pro
     const Result<DomainValidation> validation = validate_domain(hand.mesh, fit->domain, context);
     ASSERT_TRUE(validation);
     EXPECT_TRUE(validation->valid());
+}
+
+//! Length of a path over the carrier.
+double length(const QuadDomain& domain, Index edge)
+{
+    const ManifoldMesh& mesh = domain.carrier.mesh;
+    return length(mesh, *domain_path(domain, edge));
+}
+
+TEST(RefineToTolerance, edges_are_straightened_after_a_cut_unless_they_are_to_stay)
+{
+    const HandDomain hand = test::torus_askew(2, 8);
+    ToleranceOptions options = options_for(0.0011);
+    const Index vertices = hand.domain.complex.vertex_count();
+    const auto edges_that_moved = [&](bool keep) {
+        options.keep_edges = keep;
+        const Result<ToleranceFit> fit = refined(hand, options);
+        EXPECT_TRUE(fit);
+        EXPECT_GE(fit->rounds.size(), 2u);
+        std::map<std::pair<Index, Index>, double> before;
+        for (Index e = 0; e < hand.domain.edges.size(); ++e)
+            before[std::minmax(hand.domain.edges[e].a, hand.domain.edges[e].b)] =
+                length(hand.domain, e);
+        int kept = 0, moved = 0;
+        for (Index e = 0; e < fit->domain.edges.size(); ++e) {
+            const DomainEdge& edge = fit->domain.edges[e];
+            if (edge.a >= vertices || edge.b >= vertices)
+                continue; // Made by a cut.
+            const double was = before.at(std::minmax(edge.a, edge.b));
+            const bool same = std::fabs(length(fit->domain, e) - was) < 1e-9;
+            ++(same ? kept : moved);
+        }
+        EXPECT_GT(kept + moved, 0);
+        return moved;
+    };
+    EXPECT_EQ(edges_that_moved(true), 0);
+    EXPECT_GT(edges_that_moved(false), 0);
 }
 
 TEST(RefineToTolerance, a_tolerance_that_is_met_at_once_cuts_nothing)
