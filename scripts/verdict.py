@@ -18,9 +18,8 @@ ROOT = Path(__file__).resolve().parent.parent
 MAX_ANGLE_DEG = 1e-8  # Between normals at a join: rounding of doubles gives about 1e-11.
 # A coordinate at n diagonals from the origin is rounded to 1.1e-16 n diagonals, which turns a leg of
 # a control net of 1/1600 of the diagonal by 1e-11 n degrees, and the normal of a corner whose legs
-# are half a degree apart by 120 times as much. Bodies thinner than that have shorter legs.
-# The worst of the stress seeds so far has 6.9e-10 n, and 4e-10 degrees when moved to the origin.
-FAR_ANGLE_DEG = 1.2e-9
+# are a degree apart by sixty times as much. Bodies thinner than that have shorter legs.
+FAR_ANGLE_DEG = 6e-10
 LEG = 1 / 1600
 # A fit with as many patches as the default gives is far closer; what is worse has gone astray.
 MAX_RMS = 0.02  # Of the diagonal.
