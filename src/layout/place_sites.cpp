@@ -84,8 +84,9 @@ std::vector<Index> spread_sites(const LayoutLevel& level, Index count)
         return sites;
     double sum = 0.0;
     for (std::size_t begin = 0; begin < order.size();) {
-        const double limit =
-            total * static_cast<double>(sites.size() + 1) / static_cast<double>(count);
+        // What is left is shared out anew, as a vertex may have more than a share.
+        const std::size_t wanted = std::max<std::size_t>(count, sites.size() + 1) - sites.size();
+        const double share = (total - sum) / static_cast<double>(wanted);
         std::size_t end = begin;
         Vec3 centroid;
         double weight = 0.0;
@@ -93,7 +94,7 @@ std::vector<Index> spread_sites(const LayoutLevel& level, Index count)
             const Index v = order[end++].second;
             centroid += area[v] * mesh.position(v);
             weight += area[v];
-        } while (end < order.size() && sum + weight < limit);
+        } while (end < order.size() && weight < share);
         sum += weight;
         centroid = weight > 0.0 ? centroid / weight : mesh.position(order[begin].second);
         Index nearest = order[begin].second;

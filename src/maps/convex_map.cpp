@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace bot2nurbs {
 
@@ -65,6 +66,10 @@ std::vector<Edge> weighted_edges(const Overlay& overlay, bool harmonic)
     return edges;
 }
 
+// Border points that lie on one place, as where a face has no area, still get this share of their
+// side between them: a triangle on three points of a line needs them apart.
+constexpr double least_step = 1e-6;
+
 // Puts the border vertices on the polygon, by arc length along each side.
 std::vector<Vec2> place_border(const Overlay& overlay, const std::vector<Vec2>& corners)
 {
@@ -73,10 +78,14 @@ std::vector<Vec2> place_border(const Overlay& overlay, const std::vector<Vec2>& 
     for (Index s = 0; s < sides; ++s) {
         const Index first = overlay.corners[s];
         const Index last = s + 1 < sides ? overlay.corners[s + 1] : n;
-        std::vector<double> arc{0.0};
+        std::vector<double> step;
         for (Index i = first; i < last; ++i)
-            arc.push_back(arc.back() + norm(overlay.vertices[(i + 1) % n].position -
-                                            overlay.vertices[i].position));
+            step.push_back(
+                norm(overlay.vertices[(i + 1) % n].position - overlay.vertices[i].position));
+        const double least = least_step * std::accumulate(step.begin(), step.end(), 0.0);
+        std::vector<double> arc{0.0};
+        for (const double length : step)
+            arc.push_back(arc.back() + std::max(length, least));
         const Vec2 a = corners[s], b = corners[(s + 1) % sides];
         const double count = static_cast<double>(last - first);
         for (Index i = first; i < last; ++i) {

@@ -198,6 +198,23 @@ TEST(ConvexMap, sides_are_placed_by_arc_length_whichever_way_they_are_walked)
         EXPECT_TRUE(map->uv[overlay->corners[s]] == corners[s]);
 }
 
+TEST(ConvexMap, border_points_on_one_place_are_mapped_apart)
+{
+    // As where a face has its three corners on a line, and its middle is that of an edge.
+    Overlay overlay = flat_square(4);
+    overlay.vertices[1].position = overlay.vertices[2].position;
+    overlay.vertices[6].position = overlay.vertices[7].position;
+    const auto map = map_to_polygon(overlay, unit_square());
+    ASSERT_TRUE(map);
+    EXPECT_TRUE(is_injective(overlay, map->uv));
+    // A side without any length is divided evenly.
+    for (Index v = 0; v <= 4; ++v)
+        overlay.vertices[v].position = overlay.vertices[0].position;
+    const auto without = map_to_polygon(overlay, unit_square());
+    ASSERT_TRUE(without);
+    EXPECT_TRUE(is_injective(overlay, without->uv));
+}
+
 TEST(ConvexMap, distortion_of_a_rectangle_is_the_mean_of_its_aspect_and_inverse)
 {
     Overlay overlay = flat_square(6);
