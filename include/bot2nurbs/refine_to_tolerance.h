@@ -37,9 +37,10 @@ struct ToleranceOptions {
 //! Why refinement ended.
 enum class RefinementEnd {
     tolerance_met, //!< Proven: the upper bound of the distance both ways is within the tolerance.
-    patch_limit,   //!< No patch that is beyond tolerance can be cut within max_patches.
+    patch_limit,   //!< No patch that is beyond tolerance can be cut within max_patches, with what
+                   //!< must be cut around it.
     stalled,       //!< Several rounds have lowered neither the distance nor what is beyond it.
-    quality_limit, //!< A patch that is beyond tolerance cannot be cut.
+    quality_limit, //!< A patch that is beyond tolerance cannot be cut, or its pieces not be fitted.
 };
 
 //! The name of an end as reports write it.

@@ -57,7 +57,8 @@ std::uint64_t morton_code(const Vec3& unit)
     return spread(unit.x) | spread(unit.y) << 1 | spread(unit.z) << 2;
 }
 
-// Inner vertices along a space-filling curve, one for every equal share of the scaled area.
+// Inner vertices along a space-filling curve, one for every equal share of the scaled area; fewer
+// where vertices have more than a share.
 std::vector<Index> spread_sites(const LayoutLevel& level, Index count)
 {
     const ManifoldMesh& mesh = level.mesh();
@@ -80,13 +81,11 @@ std::vector<Index> spread_sites(const LayoutLevel& level, Index count)
     std::sort(order.begin(), order.end());
     // Of each share the vertex nearest to its centroid.
     std::vector<Index> sites;
-    if (count == 0)
+    if (count == 0 || !(total > 0.0))
         return sites;
-    double sum = 0.0;
+    const double share = total / static_cast<double>(count);
+    double begun = 0.0; // Of the next share.
     for (std::size_t begin = 0; begin < order.size();) {
-        // What is left is shared out anew, as a vertex may have more than a share.
-        const std::size_t wanted = std::max<std::size_t>(count, sites.size() + 1) - sites.size();
-        const double share = (total - sum) / static_cast<double>(wanted);
         std::size_t end = begin;
         Vec3 centroid;
         double weight = 0.0;
@@ -94,8 +93,8 @@ std::vector<Index> spread_sites(const LayoutLevel& level, Index count)
             const Index v = order[end++].second;
             centroid += area[v] * mesh.position(v);
             weight += area[v];
-        } while (end < order.size() && weight < share);
-        sum += weight;
+        } while (end < order.size() && begun + weight < share);
+        begun = std::fmod(begun + weight, share);
         centroid = weight > 0.0 ? centroid / weight : mesh.position(order[begin].second);
         Index nearest = order[begin].second;
         for (std::size_t i = begin; i < end; ++i)

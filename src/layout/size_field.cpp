@@ -105,10 +105,10 @@ SizeField measure_size_field(const ManifoldMesh& mesh, double smoothing, const C
     const Index n = mesh.vertex_count();
     std::vector<Vec3> normal(n);
     std::vector<double> area(n, 0.0);
-    std::vector<double> of_face(mesh.face_count()), edges_squared(mesh.face_count());
+    std::vector<double> third(mesh.face_count()), edges_squared(mesh.face_count());
     for_all(context, mesh.face_count(), [&](Index f) {
         const auto& t = mesh.triangle(f);
-        of_face[f] = norm(mesh.area_vector(f)) / 6.0;
+        third[f] = norm(mesh.area_vector(f)) / 6.0;
         for (int k = 0; k < 3; ++k)
             edges_squared[f] += norm_squared(mesh.position(t[k]) - mesh.position(t[(k + 1) % 3]));
     });
@@ -117,7 +117,7 @@ SizeField measure_size_field(const ManifoldMesh& mesh, double smoothing, const C
         const Vec3 a = mesh.area_vector(f);
         for (const Index v : mesh.triangle(f)) {
             normal[v] += a;
-            area[v] += of_face[f];
+            area[v] += third[f];
         }
         edge_sum += edges_squared[f];
     }
@@ -133,14 +133,15 @@ SizeField measure_size_field(const ManifoldMesh& mesh, double smoothing, const C
     // The normals of a needle's corners tell little about curvature across it: a turn of the normal
     // over the smoothing length is all that can be meant.
     const double most = 4.0 / (smoothing * smoothing);
+    std::vector<double> bending(mesh.face_count());
     for_all(context, mesh.face_count(),
-            [&](Index f) { of_face[f] = bending_of(mesh, f, normal, most); });
+            [&](Index f) { bending[f] = bending_of(mesh, f, normal, most); });
     std::vector<double> squared(n, 0.0);
     SizeField field;
     for (Index f = 0; f < mesh.face_count(); ++f) {
-        field.bending += of_face[f];
+        field.bending += bending[f];
         for (const Index v : mesh.triangle(f))
-            squared[v] += of_face[f] / 3.0;
+            squared[v] += bending[f] / 3.0;
     }
     for (Index v = 0; v < n; ++v)
         squared[v] = area[v] > 0.0 ? squared[v] / area[v] : 0.0;
