@@ -302,6 +302,10 @@ std::optional<ConvexMap> map_to_polygon(const Overlay& overlay, const std::vecto
     return std::nullopt;
 }
 
+// Heights of source triangles below this share of the longest side count as so much in harmonic
+// energy: a triangle on three points of a line has any energy, and none of its map's making.
+constexpr double least_height = 0.05;
+
 MapDistortion measure_distortion(const Overlay& overlay, const std::vector<Vec2>& uv)
 {
     double energy = 0.0, area = 0.0, stretch_squared = 0.0, source_area = 0.0;
@@ -317,7 +321,8 @@ MapDistortion measure_distortion(const Overlay& overlay, const std::vector<Vec2>
         // |grad u|^2 + |grad v|^2 = sum over the metric of the source triangle.
         const double pp = dot(p, p), pq = dot(p, q), qq = dot(q, q);
         const double aa = dot(a, a), ab = dot(a, b), bb = dot(b, b);
-        energy += 0.25 * (aa * qq - 2.0 * ab * pq + bb * pp) / twice_source;
+        const double least = least_height * std::max({pp, qq, norm_squared(q - p)});
+        energy += 0.25 * (aa * qq - 2.0 * ab * pq + bb * pp) / std::max(twice_source, least);
         stretch_squared += 0.25 * twice_source * squared_speed(p, q, a, b, twice_target);
     }
     MapDistortion d;

@@ -39,7 +39,8 @@ bool is_injective(const Overlay& overlay, const std::vector<Vec2>& uv);
 
 //! Distortion of a map of an overlay to a region of the plane.
 struct MapDistortion {
-    //! Harmonic energy over the target's area: 1 for a conformal map, whatever its areas.
+    //! Harmonic energy over the target's area: 1 for a conformal map, whatever its areas. Triangles
+    //! of less height than 1/20 of their longest side count as if they had that.
     double dirichlet = 0.0;
     //! Square of the L2 stretch of the inverse map, normalised by both areas: 1 for a similarity,
     //! large where much surface is squeezed into little of the plane. \cite sander_2001

@@ -227,6 +227,23 @@ TEST(ConvexMap, distortion_of_a_rectangle_is_the_mean_of_its_aspect_and_inverse)
     EXPECT_NEAR(d.stretch, 0.5 * (4.0 + 0.25), 1e-12);
 }
 
+TEST(ConvexMap, a_triangle_on_three_points_of_a_line_does_not_decide_about_a_map)
+{
+    // The harmonic energy of a triangle with so little height is what it likes to be.
+    const Overlay even = flat_square(6);
+    const auto map = map_to_polygon(even, unit_square());
+    ASSERT_TRUE(map);
+    const double plain = measure_distortion(even, map->uv).combined();
+    for (const double height : {1e-1, 1e-4, 1e-8, 1e-14, 0.0}) {
+        Overlay overlay = even;
+        const auto& t = overlay.triangles[overlay.triangles.size() / 2];
+        const Vec3 a = even.vertices[t[1]].position, b = even.vertices[t[2]].position;
+        const Vec3 foot = 0.5 * (a + b);
+        overlay.vertices[t[0]].position = foot + height * (even.vertices[t[0]].position - foot);
+        EXPECT_LT(measure_distortion(overlay, map->uv).combined(), 1.5 * plain) << height;
+    }
+}
+
 TEST(ConvexMap, a_limb_squeezed_into_a_patch_shows_in_the_stretch)
 {
     // A tower pulled out of the middle of a flat sheet.
