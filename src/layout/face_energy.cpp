@@ -3,6 +3,7 @@
 
 #include "maps/convex_map.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace bot2nurbs {
@@ -10,6 +11,8 @@ namespace bot2nurbs {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+// Smaller patches count as this size: else any shape would do for those at a narrow neck or handle.
+constexpr double least_size = 0.5;
 
 } // namespace
 
@@ -44,7 +47,8 @@ FaceEnergy face_energy(const std::vector<PathSide>& border, const SizeMetric& me
         size += 0.5 * norm(cross(p, q)) * density * density;
     }
     size /= quad ? metric.target_area : 0.5 * metric.target_area;
-    return {measure_distortion(*overlay, map->uv).combined() * size * size, size};
+    const double counted = std::max(size, least_size);
+    return {measure_distortion(*overlay, map->uv).combined() * counted * counted, size};
 }
 
 } // namespace bot2nurbs

@@ -17,8 +17,8 @@ struct SizeMetric {
 };
 
 //! Energy of a patch (a triangle of K_tri counts as half a patch): distortion times the square of
-//! its size over the target. The sum over all patches grows with distortion, with uneven sizes, and
-//! when fewer patches must cover the surface.
+//! its size over the target, or of one half if that is more. The sum over all patches grows with
+//! distortion, with uneven sizes, and when fewer patches must cover the surface.
 struct FaceEnergy {
     double energy = 0.0; //!< Infinite when the face cannot be mapped.
     double size = 0.0;   //!< Over the target: the energy is at least its square.

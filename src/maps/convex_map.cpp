@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
+#include <Eigen/SparseLU>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include <algorithm>
@@ -21,13 +22,24 @@ namespace {
 // vertex onto its neighbour or the border, so there is an upper bound not far from the lower one.
 constexpr double min_weight = 0.2;
 constexpr double max_weight = 5.0;
+// Bounds of what mean value weights are made of: the tangent of half an angle, infinite where a
+// vertex lies on the line between two neighbours, and lengths over the longest.
+constexpr double least_part = 1e-9;
+constexpr double most_tangent = 1e3;
 // Up to this many inner vertices a dense solve is faster than a sparse one.
 constexpr Index dense_limit = 48;
 
-// Weights of one overlay as a list of directed entries between inner vertices and anything.
+// An edge with at least one inner end. Each end is a combination of its neighbours with the weights
+// at it.
 struct Edge {
-    Index a, b;
-    double weight;
+    Index a, b; // a < b, so b is inner.
+    double at_a, at_b;
+};
+
+// Positive weights of an overlay's edges.
+struct Weights {
+    std::vector<Edge> edges;
+    bool symmetric = true; // As made: at_a == at_b for every edge.
 };
 
 double cotangent(const Vec3& at, const Vec3& p, const Vec3& q)
@@ -39,31 +51,75 @@ double cotangent(const Vec3& at, const Vec3& p, const Vec3& q)
     return area > 0.0 ? cosine / area : (cosine > 0.0 ? max_weight : -max_weight);
 }
 
-// The undirected edges with at least one inner end, each once, with symmetric weights.
-std::vector<Edge> weighted_edges(const Overlay& overlay, bool harmonic)
+// Tangent of half the angle between two edges of one corner.
+double half_tangent(const Vec3& u, const Vec3& v)
 {
-    const std::vector<Index>& opposite = overlay.opposite;
-    std::vector<Edge> edges;
-    edges.reserve(2 * overlay.triangles.size());
-    const auto half_cotangent = [&overlay](Index h) {
-        const auto& t = overlay.triangles[h / 3];
-        return 0.5 * cotangent(overlay.vertices[t[(h + 2) % 3]].position,
-                               overlay.vertices[t[h % 3]].position,
-                               overlay.vertices[t[(h + 1) % 3]].position);
-    };
-    for (Index h = 0; h < opposite.size(); ++h) {
-        const Index g = opposite[h];
+    const double sine = norm(cross(u, v)), base = norm(u) * norm(v) + dot(u, v);
+    return sine < most_tangent * base ? sine / base : most_tangent;
+}
+
+// Calls act(h, g, from, to) for every edge with at least one inner end, once: half edges h and g,
+// and the ends of h.
+template <class Act> void for_each_edge(const Overlay& overlay, const Act& act)
+{
+    for (Index h = 0; h < overlay.opposite.size(); ++h) {
+        const Index g = overlay.opposite[h];
         if (g == invalid_index || g < h)
             continue;
-        const Index a = overlay.triangles[h / 3][h % 3], b = overlay.triangles[h / 3][(h + 1) % 3];
-        if (a < overlay.boundary_count && b < overlay.boundary_count)
-            continue;
-        const double weight =
+        const auto& t = overlay.triangles[h / 3];
+        const Index from = t[h % 3], to = t[(h + 1) % 3];
+        if (from >= overlay.boundary_count || to >= overlay.boundary_count)
+            act(h, g, from, to);
+    }
+}
+
+// Corner k of the triangle of half edge h, counted from where h begins.
+const Vec3& corner_of(const Overlay& overlay, Index h, Index k)
+{
+    return overlay.vertices[overlay.triangles[h / 3][(h + k) % 3]].position;
+}
+
+Weights symmetric_weights(const Overlay& overlay, bool harmonic)
+{
+    const auto half_cotangent = [&overlay](Index h) {
+        return 0.5 * cotangent(corner_of(overlay, h, 2), corner_of(overlay, h, 0),
+                               corner_of(overlay, h, 1));
+    };
+    Weights weights;
+    weights.edges.reserve(2 * overlay.triangles.size());
+    for_each_edge(overlay, [&](Index h, Index g, Index from, Index to) {
+        const double w =
             harmonic ? std::clamp(half_cotangent(h) + half_cotangent(g), min_weight, max_weight)
                      : 1.0;
-        edges.push_back({std::min(a, b), std::max(a, b), weight});
-    }
-    return edges;
+        weights.edges.push_back({std::min(from, to), std::max(from, to), w, w});
+    });
+    return weights;
+}
+
+// \cite floater_2003
+Weights mean_value_weights(const Overlay& overlay)
+{
+    const auto length = [&overlay](Index h) {
+        return norm(corner_of(overlay, h, 1) - corner_of(overlay, h, 0));
+    };
+    double longest = 0.0;
+    for_each_edge(overlay,
+                  [&](Index h, Index, Index, Index) { longest = std::max(longest, length(h)); });
+    // Of the angle at corner k of half edge h's triangle.
+    const auto tangent = [&overlay](Index h, Index k) {
+        const Vec3& at = corner_of(overlay, h, k);
+        return half_tangent(corner_of(overlay, h, k + 1) - at, corner_of(overlay, h, k + 2) - at);
+    };
+    Weights weights{{}, false};
+    weights.edges.reserve(2 * overlay.triangles.size());
+    for_each_edge(overlay, [&](Index h, Index g, Index from, Index to) {
+        const double shrink = 1.0 / std::max(length(h), least_part * longest);
+        const double at_from = shrink * std::max(tangent(h, 0) + tangent(g, 1), least_part);
+        const double at_to = shrink * std::max(tangent(h, 1) + tangent(g, 0), least_part);
+        weights.edges.push_back(from < to ? Edge{from, to, at_from, at_to}
+                                          : Edge{to, from, at_to, at_from});
+    });
+    return weights;
 }
 
 // Border points that lie on one place, as where a face has no area, still get this share of their
@@ -99,50 +155,62 @@ std::vector<Vec2> place_border(const Overlay& overlay, const std::vector<Vec2>& 
 
 // Solves for the inner vertices in the arithmetic of Scalar.
 template <class Scalar>
-bool solve_inner(const Overlay& overlay, const std::vector<Edge>& edges, std::vector<Vec2>& uv)
+bool solve_inner(const Overlay& overlay, const Weights& weights, std::vector<Vec2>& uv)
 {
     const Index border = overlay.boundary_count;
     const Index inner = static_cast<Index>(overlay.vertices.size()) - border;
     using Rhs = Eigen::Matrix<Scalar, Eigen::Dynamic, 2>;
+    using Dense = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+    using Sparse = Eigen::SparseMatrix<Scalar>;
     Rhs rhs = Rhs::Zero(inner, 2);
     Eigen::Matrix<Scalar, Eigen::Dynamic, 1> diagonal =
         Eigen::Matrix<Scalar, Eigen::Dynamic, 1>::Zero(inner);
-    for (const Edge& e : edges) {
-        diagonal(e.b - border) += Scalar(e.weight); // e.a < e.b, so e.b is inner.
+    for (const Edge& e : weights.edges) {
+        diagonal(e.b - border) += Scalar(e.at_b);
         if (e.a >= border) {
-            diagonal(e.a - border) += Scalar(e.weight);
+            diagonal(e.a - border) += Scalar(e.at_a);
         } else {
-            rhs(e.b - border, 0) += Scalar(e.weight) * Scalar(uv[e.a].x);
-            rhs(e.b - border, 1) += Scalar(e.weight) * Scalar(uv[e.a].y);
+            rhs(e.b - border, 0) += Scalar(e.at_b) * Scalar(uv[e.a].x);
+            rhs(e.b - border, 1) += Scalar(e.at_b) * Scalar(uv[e.a].y);
         }
     }
+    // Calls add(row, column, value) for what is below the diagonal, and above where that differs.
+    const auto for_each_entry = [&](const auto& add) {
+        for (const Edge& e : weights.edges) {
+            if (e.a < border)
+                continue;
+            add(e.b - border, e.a - border, -Scalar(e.at_b));
+            if (!weights.symmetric)
+                add(e.a - border, e.b - border, -Scalar(e.at_a));
+        }
+    };
     Rhs solution;
-    if (inner <= dense_limit) {
-        using Dense = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
-        Dense A = Dense::Zero(inner, inner);
-        for (Index i = 0; i < inner; ++i)
-            A(i, i) = diagonal(i);
-        for (const Edge& e : edges)
-            if (e.a >= border)
-                A(e.b - border, e.a - border) = -Scalar(e.weight);
-        Eigen::LLT<Dense, Eigen::Lower> factor(A);
+    const auto solve = [&](auto&& factor) {
         if (factor.info() != Eigen::Success)
             return false;
         solution = factor.solve(rhs);
+        return true;
+    };
+    if (inner <= dense_limit) {
+        Dense A = diagonal.asDiagonal();
+        for_each_entry([&A](Index i, Index j, const Scalar& x) { A(i, j) = x; });
+        if (weights.symmetric) {
+            if (!solve(Eigen::LLT<Dense, Eigen::Lower>(A)))
+                return false;
+        } else {
+            solution = Eigen::PartialPivLU<Dense>(A).solve(rhs);
+        }
     } else {
         std::vector<Eigen::Triplet<Scalar>> entries;
-        entries.reserve(edges.size() + inner);
+        entries.reserve(2 * weights.edges.size() + inner);
         for (Index i = 0; i < inner; ++i)
             entries.emplace_back(i, i, diagonal(i));
-        for (const Edge& e : edges)
-            if (e.a >= border)
-                entries.emplace_back(e.b - border, e.a - border, -Scalar(e.weight));
-        Eigen::SparseMatrix<Scalar> A(inner, inner);
+        for_each_entry([&](Index i, Index j, const Scalar& x) { entries.emplace_back(i, j, x); });
+        Sparse A(inner, inner);
         A.setFromTriplets(entries.begin(), entries.end());
-        Eigen::SimplicialLLT<Eigen::SparseMatrix<Scalar>, Eigen::Lower> factor(A);
-        if (factor.info() != Eigen::Success)
+        if (!(weights.symmetric ? solve(Eigen::SimplicialLLT<Sparse, Eigen::Lower>(A))
+                                : solve(Eigen::SparseLU<Sparse, Eigen::COLAMDOrdering<int>>(A))))
             return false;
-        solution = factor.solve(rhs);
     }
     for (Index i = 0; i < inner; ++i)
         uv[border + i] = {static_cast<double>(solution(i, 0)), static_cast<double>(solution(i, 1))};
@@ -204,56 +272,87 @@ Stretch measure_stretch(const Overlay& overlay, const std::vector<Vec2>& uv)
     return stretch;
 }
 
-// Makes springs weaker where much surface is squeezed into little of the plane. Positive and
-// symmetric they stay. \cite yoshizawa_2004 divide by the stretch of one end; with both ends that
-// is a power of 1/4 of its squares.
-void weaken(const Stretch& stretch, double power, std::vector<Edge>& edges)
+// Makes springs weaker where much surface is squeezed into little of the plane. Positive they stay,
+// and symmetric if they were. \cite yoshizawa_2004 divide by the stretch of the other end; that of
+// a vertex itself changes nothing in its row. With squares that is a power of 1/2.
+void weaken(const Stretch& stretch, double power, Weights& weights)
 {
     constexpr double least = 1e-8, most = 1e48;
-    for (Edge& e : edges)
-        e.weight /= std::pow(std::clamp(stretch.at[e.a], least, most) *
-                                 std::clamp(stretch.at[e.b], least, most),
-                             power);
+    for (Edge& e : weights.edges) {
+        const double by = std::pow(std::clamp(stretch.at[e.a], least, most) *
+                                       std::clamp(stretch.at[e.b], least, most),
+                                   power);
+        e.at_a /= by;
+        e.at_b /= by;
+    }
 }
 
-// Maps with these weights, then with weaker and weaker ones where that lowers the stretch, until it
-// is low or so many solves are done. \return whether the map is injective.
-bool map_with_little_stretch(const Overlay& overlay, const std::vector<Vec2>& border,
-                             std::vector<Edge> edges, std::vector<Vec2>& uv)
+// Below, solving again moves charts about and gains nothing: most charts have 1.1 to 2.
+constexpr double low_stretch = 4.0;
+
+// A map in doubles.
+struct Trial {
+    std::vector<Vec2> uv;
+    Weights weights; // That it was made with.
+    Stretch stretch;
+    bool injective = false;
+
+    bool better_than(const Trial& other) const
+    {
+        return injective == other.injective ? stretch.mean < other.stretch.mean : injective;
+    }
+    bool good() const { return injective && stretch.mean < low_stretch; }
+};
+
+// A system that cannot be solved is a trial as bad as can be.
+Trial try_weights(const Overlay& overlay, const std::vector<Vec2>& border, Weights weights)
 {
-    // Below, solving again moves charts about and gains nothing: most charts have 1.1 to 2.
-    constexpr double low_stretch = 4.0;
+    Trial trial{border, std::move(weights), {{}, INFINITY}, false};
+    if (solve_inner<double>(overlay, trial.weights, trial.uv)) {
+        trial.stretch = measure_stretch(overlay, trial.uv);
+        trial.injective = is_injective(overlay, trial.uv);
+    }
+    return trial;
+}
+
+// Maps with weaker and weaker weights where that lowers the stretch, until it is low or so many
+// solves are done.
+Trial lower_stretch(const Overlay& overlay, const std::vector<Vec2>& border, Trial best)
+{
     constexpr double most_power = 0.25, least_power = 0.03;
     constexpr int most_solves = 16;
-    std::vector<Vec2> next = border;
-    if (!solve_inner<double>(overlay, edges, next))
-        return false;
-    bool injective = false;
-    double power = most_power, least = INFINITY;
-    Stretch stretch;
-    std::vector<Edge> weights;
-    for (int solves = 1;; ++solves) {
-        Stretch now = measure_stretch(overlay, next);
-        const bool valid = is_injective(overlay, next);
-        if ((valid && !injective) || (valid == injective && now.mean < least)) {
-            if (solves > 1)
-                power = std::min(most_power, 1.5 * power);
-            uv = next;
-            injective = valid;
-            least = now.mean;
-            stretch = std::move(now);
-            weights = edges;
+    double power = most_power;
+    for (int solves = 1; solves < most_solves; ++solves) {
+        if (best.good() || best.stretch.at.empty() || power < least_power)
+            break;
+        Weights weights = best.weights;
+        weaken(best.stretch, power, weights);
+        Trial next = try_weights(overlay, border, std::move(weights));
+        if (next.better_than(best)) {
+            power = std::min(most_power, 1.5 * power);
+            best = std::move(next);
         } else {
             power *= 0.5;
         }
-        if ((injective && least < low_stretch) || solves == most_solves || power < least_power)
-            return injective;
-        edges = weights;
-        weaken(stretch, power, edges);
-        next = border;
-        if (!solve_inner<double>(overlay, edges, next))
-            return injective;
     }
+    return best;
+}
+
+// With cotangents or, where these squeeze, with mean values if they do less: cotangents of needles
+// are beyond their bounds, and say little about them.
+Trial map_by_shape(const Overlay& overlay, const std::vector<Vec2>& border)
+{
+    Trial first = try_weights(overlay, border, symmetric_weights(overlay, true));
+    if (first.good())
+        return first;
+    Trial second = try_weights(overlay, border, mean_value_weights(overlay));
+    if (second.better_than(first))
+        std::swap(first, second);
+    first = lower_stretch(overlay, border, std::move(first));
+    if (first.good())
+        return first;
+    second = lower_stretch(overlay, border, std::move(second));
+    return second.better_than(first) ? second : first;
 }
 
 } // namespace
@@ -292,12 +391,18 @@ std::optional<ConvexMap> map_to_polygon(const Overlay& overlay, const std::vecto
     for (const MapLevel level : {MapLevel::harmonic, MapLevel::uniform, MapLevel::exact}) {
         if (level < first)
             continue;
-        ConvexMap map{border, level};
-        const std::vector<Edge> edges = weighted_edges(overlay, level == MapLevel::harmonic);
-        if (level == MapLevel::exact
-                ? solve_inner<Extended>(overlay, edges, map.uv) && is_injective(overlay, map.uv)
-                : map_with_little_stretch(overlay, border, edges, map.uv))
-            return map;
+        Trial trial{border, {}, {}, false};
+        if (level == MapLevel::harmonic)
+            trial = map_by_shape(overlay, border);
+        else if (level == MapLevel::uniform)
+            trial = lower_stretch(overlay, border,
+                                  try_weights(overlay, border, symmetric_weights(overlay, false)));
+        else
+            trial.injective =
+                solve_inner<Extended>(overlay, symmetric_weights(overlay, false), trial.uv) &&
+                is_injective(overlay, trial.uv);
+        if (trial.injective)
+            return ConvexMap{std::move(trial.uv), level};
     }
     return std::nullopt;
 }

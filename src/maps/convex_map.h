@@ -21,14 +21,14 @@ std::vector<Vec2> regular_polygon(Index sides);
 std::vector<Vec2> unit_square();
 
 //! Maps an overlay to the convex polygon with the given corners (one per side), each side by arc
-//! length. Inner vertices are convex combinations of their neighbours with symmetric positive
-//! weights: cotangents, bounded below, so that the map is the discrete harmonic one wherever the
-//! triangulation is Delaunay, and by Tutte and Floater injective in any case; uniform weights when
-//! rounding folds a triangle; then uniform weights in extended precision. Injectivity is decided
-//! exactly for every triangle. Where the map squeezes much surface into little of the polygon (a
-//! limb, a long way round a hole), the weights there are lowered, which any positive ones may be,
-//! and it is solved again. \cite eck_1995, section 3, \cite tutte_1963 \cite floater_1997
-//! \cite yoshizawa_2004
+//! length. Inner vertices are convex combinations of their neighbours with positive weights, and so
+//! the map is by Tutte and Floater injective: cotangents, bounded below, which give the discrete
+//! harmonic map wherever the triangulation is Delaunay; mean values, where with cotangents much
+//! surface is squeezed into little of the polygon (rows of needles); uniform weights when rounding
+//! folds a triangle; then uniform weights in extended precision. Injectivity is decided exactly for
+//! every triangle. Where a map squeezes (a limb, a long way round a hole), the weights there are
+//! lowered, which any positive ones may be, and it is solved again. \cite eck_1995, section 3,
+//! \cite tutte_1963 \cite floater_1997 \cite floater_2003 \cite yoshizawa_2004
 //! Empty when even that map has a triangle that is not positive after rounding to doubles.
 //! `first` is the level to begin with.
 std::optional<ConvexMap> map_to_polygon(const Overlay& overlay, const std::vector<Vec2>& corners,

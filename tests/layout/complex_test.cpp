@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "layout/base_complex.h"
+#include "layout/face_energy.h"
 #include "layout/improve.h"
 #include "layout/pair_triangles.h"
 #include "layout/split_in_quads.h"
@@ -135,6 +136,21 @@ TEST(QuadLayout, pairs_every_triangle_and_stays_sound_through_improvement)
         improve_quads(complex, 6, {density, surface_area(mesh) / 12.0}, context);
         expect_sound(complex, 4, name + " improved");
     }
+}
+
+TEST(FaceEnergy, of_a_small_patch_is_that_of_one_half_as_large_as_wanted)
+{
+    const ManifoldMesh mesh = icosphere(3);
+    const PatchComplex complex = base_complex(mesh, 30);
+    OverlayBuilder builder(mesh);
+    const std::vector<double> density(mesh.vertex_count(), 1.0);
+    const auto border = complex.geometry(complex.faces()[0].sides);
+    const FaceEnergy as_wanted = face_energy(border, {density, surface_area(mesh) / 15.0}, builder);
+    const double distortion = as_wanted.energy / (as_wanted.size * as_wanted.size);
+    ASSERT_GT(as_wanted.size, 0.5);
+    const FaceEnergy small = face_energy(border, {density, surface_area(mesh)}, builder);
+    ASSERT_LT(small.size, 0.5);
+    EXPECT_NEAR(small.energy, 0.25 * distortion, 1e-12 * distortion);
 }
 
 TEST(QuadLayout, improvement_lowers_distortion_and_leaves_few_extraordinary_vertices)

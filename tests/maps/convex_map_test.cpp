@@ -149,6 +149,26 @@ Overlay tower(Index rings)
     return overlay;
 }
 
+TEST(ConvexMap, of_flat_needles_is_as_flat_as_they_are)
+{
+    // Rows of a tenth of the height, again and again, down to lines. Bounded cotangents see rows
+    // of one height and squeeze those that are higher; mean values reproduce the plane, but for the
+    // least step of border points.
+    constexpr int n = 48;
+    Overlay overlay = flat_square(n);
+    for (auto& v : overlay.vertices) {
+        const double row = std::round(n * v.position.y);
+        v.position.y = row > 0.0 ? std::pow(10.0, row - n) : 0.0;
+    }
+    const auto map = map_to_polygon(overlay, unit_square());
+    ASSERT_TRUE(map);
+    EXPECT_EQ(map->level, MapLevel::harmonic);
+    for (Index v = 0; v < overlay.vertices.size(); ++v)
+        EXPECT_LT(std::hypot(map->uv[v].x - overlay.vertices[v].position.x,
+                             map->uv[v].y - overlay.vertices[v].position.y),
+                  1e-4);
+}
+
 TEST(ConvexMap, of_a_tower_is_injective_down_to_triangles_of_1e_minus_30_or_refused)
 {
     for (const Index rings : {5u, 20u, 35u}) {
