@@ -29,6 +29,10 @@ constexpr int least_rounds = 5;
 const double fairness_decay = std::sqrt(0.1);
 //! With more fairness than this a surface is as smooth as it gets.
 constexpr double most_fairness = 1e2;
+//! In the first round quads that fold get so many times the fairness, again and again; three times
+//! in vain, and they have no more than the others.
+constexpr double raise_at_fold = 10.0;
+constexpr int vain_raises = 3;
 //! A quad with this many samples, two for each of its unknowns, keeps the fairness at
 //! `sparse_fairness`; with four times as many the data alone decide down to 1e-7.
 constexpr double sparse_samples = 30.0;
@@ -103,7 +107,8 @@ double speed_at(const SurfacePoint& s, double mean)
 FitLoop::FitLoop(const SplineNetwork& network, const ReducedNetwork& reduced,
                  const FitOptions& options, Context& context)
     : network_(network), reduced_(reduced), options_(options), context_(context),
-      system_(reduced, context), guard_(0, {}, {}), response_(network.complex, reduced)
+      system_(reduced, context), guard_(network.complex.quad_count()),
+      response_(network.complex, reduced)
 {
     // Each of the 27 multiplications of a 3 x 3 block product, half of them by symmetry.
     coupled_affordable_ = 0.5 * 27.0 * system_.factor_work() <= coupled_work_limit;
@@ -333,6 +338,34 @@ Status FitLoop::raise_to_noise(State& state)
     return std::nullopt;
 }
 
+Status FitLoop::raise_at_folds(State& state)
+{
+    guard_.set_source(normals, where);
+    state.folds = guard_.folds(state.surface, context_);
+    std::vector<int> vain(state.folds.size(), 0);
+    const auto may_rise = [&](Index q) {
+        return state.folds[q] > 0 && vain[q] < vain_raises && level_[q] < most_fairness;
+    };
+    for (;;) {
+        const std::vector<Index> before = state.folds;
+        bool raised = false;
+        for (Index q = 0; q < before.size(); ++q)
+            if (may_rise(q)) {
+                level_[q] *= raise_at_fold;
+                raised = true;
+            }
+        if (!raised)
+            return std::nullopt;
+        apply_fairness();
+        state = {};
+        if (const auto error = first_round(state))
+            return error;
+        for (Index q = 0; q < before.size(); ++q)
+            if (before[q] > 0 && state.folds[q] >= before[q] && ++vain[q] == vain_raises)
+                level_[q] = round_fairness_;
+    }
+}
+
 Status FitLoop::next_round(State& state, double& mu, bool& stuck)
 {
     scale_fairness(summary.rounds.back().rms > options_.noise ? fairness_decay : 1.0);
@@ -385,7 +418,7 @@ Status FitLoop::next_round(State& state, double& mu, bool& stuck)
     }
 }
 
-void FitLoop::record(const State& state, double mu, double start)
+void FitLoop::record(State& state, double mu, double start)
 {
     FitRound round;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -395,6 +428,8 @@ void FitLoop::record(const State& state, double mu, double start)
             ++round.crossed;
         where[i] = foot.where;
     }
+    guard_.set_source(normals, where);
+    state.folds = guard_.folds(state.surface, context_);
     round.rms = rms_distance(state);
     round.fairness = round_fairness_;
     round.damping = mu;
@@ -427,16 +462,13 @@ Status FitLoop::run()
     level_.assign(floor_.size(), options_.fairness);
     apply_fairness();
     in_plane_ = in_plane_quads(network_.complex.quad_count(), points, normals, where, on_curve);
-    guard_ = FoldGuard(network_.complex.quad_count(), normals, where);
     if (const auto error = first_round(state))
         return error;
     if (const auto error = raise_to_noise(state))
         return error;
+    if (const auto error = raise_at_folds(state))
+        return error;
     weigh_by_surface(state);
-    if (!guard_.ready()) {
-        guard_.set_reference(state.surface);
-        state.folds = guard_.folds(state.surface, context_);
-    }
     record(state, 1.0, start);
 
     const bool tangent = options_.rows == DistanceRows::tangent && coupled_affordable_;

@@ -71,9 +71,15 @@ private:
     void scale_fairness(double share);
     //! Repeats the first round with more fairness while the surface follows the noise.
     Status raise_to_noise(State& state);
+    //! Repeats the first round with more fairness in quads that fold, as long as that helps: what
+    //! folds in it, later rounds hardly unfold. Parameters whose speed varies much make surfaces of
+    //! few pieces overshoot. Ends: a quad is raised until it does not fold, or three times in vain,
+    //! or up to most_fairness.
+    Status raise_at_folds(State& state);
     double rms_distance(const State& state) const;
     void apply_fairness();
-    void record(const State& state, double mu, double start);
+    //! Takes the feet as the new places of the samples, and of the normals that curls are known by.
+    void record(State& state, double mu, double start);
 
     const SplineNetwork& network_;
     const ReducedNetwork& reduced_;

@@ -5,101 +5,186 @@
 #include "spline/bernstein.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 
 namespace bot2nurbs {
 
 namespace {
 
-constexpr Index pieces_per_quad = pieces_per_side * pieces_per_side;
 //! Places on a piece and direction, as parameters of the piece: near the corners, where folds at
-//! extraordinary vertices begin, and the middle.
-constexpr double places[3] = {0.02, 0.5, 0.98};
+//! extraordinary vertices begin, and between.
+constexpr std::array<double, 5> places{0.02, 0.26, 0.5, 0.74, 0.98};
+//! Places of a quad: side x side, those of constant u in a row.
+constexpr Index side = places.size() * pieces_per_side;
+constexpr Index places_per_quad = side * side;
+//! Normals of the source are known by cells, 3 x 3 of a piece: so many samples there are.
+constexpr Index cells_per_piece_side = 3;
+constexpr Index cell_side = cells_per_piece_side * pieces_per_side;
+constexpr Index cells_per_quad = cell_side * cell_side;
 //! Unit normals whose mean is shorter than this span more than about 120 degrees; no direction
-//! stands for such a piece.
+//! stands for them.
 constexpr double clear_mean = 0.5;
+//! Cosine of the angle, 150 degrees, from which a normal is far from that of the source: where the
+//! surface rounds edges and grooves it may well stand across the normals beside them.
+constexpr double far = -0.866;
+//! A turn by more than a right angle within this part of the way between two places is a fold.
+constexpr int halvings = 12;
 constexpr std::size_t chunk_quads = 16;
 
-template <class Visit> void visit_places(const SplineSurface& surface, Index piece, Visit visit)
+double parameter(Index i)
 {
-    const Index q = piece / pieces_per_quad, a = piece % pieces_per_quad / pieces_per_side,
-                b = piece % pieces_per_side;
-    for (const double s : places)
-        for (const double t : places) {
-            const SurfacePoint p =
-                surface.evaluate({q, (a + s) / pieces_per_side, (b + t) / pieces_per_side});
-            visit(cross(p.du, p.dv));
+    return (i / places.size() + places[i % places.size()]) / pieces_per_side;
+}
+
+Index cell_at(double u, double v)
+{
+    const auto along = [](double x) {
+        return std::min(cell_side - 1, static_cast<Index>(std::max(0.0, cell_side * x)));
+    };
+    return cell_side * along(u) + along(v);
+}
+
+struct NormalSum {
+    Vec3 sum;
+    double count = 0.0;
+
+    void add(const NormalSum& other)
+    {
+        sum += other.sum;
+        count += other.count;
+    }
+    //! Zero when there is no clear one.
+    Vec3 direction() const
+    {
+        return count > 0.0 && norm(sum) >= clear_mean * count ? normalized(sum) : Vec3{};
+    }
+};
+
+//! The places of one quad.
+class QuadPlaces {
+public:
+    //! `source`: its normals by cells, or null.
+    QuadPlaces(const SplineSurface& surface, Index quad, const Vec3* source)
+        : surface_(surface), quad_(quad)
+    {
+        for (Index k = 0; k < places_per_quad; ++k)
+            place_[k] = at(parameter(k / side), parameter(k % side));
+        find_sides_of_folds();
+        for (Index k = 0; k < places_per_quad && source != nullptr; ++k) {
+            const Place& p = place_[k];
+            if (dot(p.normal, source[cell_at(p.u, p.v)]) < far * norm(p.normal))
+                sign_[k] = -1;
         }
+    }
+
+    Index fold_count() const
+    {
+        const auto wrong = std::count(sign_.begin(), sign_.end(), -1);
+        return std::max(static_cast<Index>(wrong), Index{folded_});
+    }
+    double smallest_jacobian() const
+    {
+        double sum = 0.0, least = INFINITY;
+        for (Index k = 0; k < places_per_quad; ++k) {
+            const double jacobian = norm(place_[k].normal);
+            sum += jacobian / places_per_quad;
+            least = std::min(least, sign_[k] * jacobian);
+        }
+        return sum > 0.0 ? least / sum : 0.0;
+    }
+
+private:
+    struct Place {
+        double u = 0.0, v = 0.0;
+        Vec3 normal; //!< du x dv
+    };
+
+    Place at(double u, double v) const
+    {
+        const SurfacePoint s = surface_.evaluate({quad_, u, v});
+        return {u, v, cross(s.du, s.dv)};
+    }
+    static bool opposed(const Place& a, const Place& b) { return dot(a.normal, b.normal) < 0.0; }
+    bool fold_between(Place a, Place b) const
+    {
+        for (int i = 0; i < halvings && opposed(a, b); ++i) {
+            const Place middle = at(0.5 * (a.u + b.u), 0.5 * (a.v + b.v));
+            // Opposed to neither: the surface has turned on the way, and the loop ends.
+            (opposed(a, middle) ? b : a) = middle;
+        }
+        return opposed(a, b);
+    }
+    void find_sides_of_folds()
+    {
+        // From place to place: down the first column, and along every row.
+        sign_[0] = 1;
+        for (Index k = 1; k < places_per_quad; ++k) {
+            const Index before = k % side > 0 ? k - 1 : k - side;
+            sign_[k] = fold_between(place_[before], place_[k]) ? -sign_[before] : sign_[before];
+        }
+        // That sees no fold which ends between two rows.
+        for (Index k = side; k < places_per_quad && !folded_; ++k)
+            folded_ = fold_between(place_[k - side], place_[k]);
+        if (2 * std::count(sign_.begin(), sign_.end(), -1) > std::ptrdiff_t{places_per_quad})
+            for (int& s : sign_)
+                s = -s;
+    }
+
+    const SplineSurface& surface_;
+    Index quad_;
+    std::array<Place, places_per_quad> place_;
+    std::array<int, places_per_quad> sign_{};
+    bool folded_ = false;
+};
+
+template <class Value, class Measure>
+std::vector<Value> of_quads(const SplineSurface& surface, const std::vector<Vec3>& source,
+                            const Context& context, const Measure& measure)
+{
+    std::vector<Value> values(surface.patch_count());
+    for_each_chunk(context, values.size(), chunk_quads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t q = begin; q < end; ++q)
+            values[q] = measure(QuadPlaces(surface, static_cast<Index>(q),
+                                           source.empty() ? nullptr : &source[cells_per_quad * q]));
+    });
+    return values;
 }
 
 } // namespace
 
-FoldGuard::FoldGuard(Index quads, const std::vector<Vec3>& normals,
-                     const std::vector<DomainPoint>& where)
+void FoldGuard::set_source(const std::vector<Vec3>& normals, const std::vector<DomainPoint>& where)
 {
-    if (normals.empty())
-        return;
-    reference_.assign(static_cast<std::size_t>(quads) * pieces_per_quad, Vec3{});
-    std::vector<double> count(reference_.size(), 0.0);
-    for (std::size_t i = 0; i < normals.size(); ++i) {
-        const Index piece = pieces_per_quad * where[i].quad +
-                            pieces_per_side * piece_parameter(where[i].u).piece +
-                            piece_parameter(where[i].v).piece;
-        reference_[piece] += normals[i];
-        count[piece] += 1.0;
-    }
-    for (std::size_t p = 0; p < reference_.size(); ++p)
-        reference_[p] =
-            norm(reference_[p]) >= clear_mean * count[p] ? normalized(reference_[p]) : Vec3{};
-}
-
-void FoldGuard::set_reference(const SplineSurface& surface)
-{
-    reference_.assign(static_cast<std::size_t>(surface.patch_count()) * pieces_per_quad, Vec3{});
-    for (Index p = 0; p < reference_.size(); ++p) {
-        Vec3 sum;
-        visit_places(surface, p, [&](const Vec3& normal) { sum += normalized(normal); });
-        reference_[p] = norm(sum) >= clear_mean * 9.0 ? normalized(sum) : Vec3{};
-    }
+    const std::size_t count = static_cast<std::size_t>(cells_per_quad) * quads_;
+    const auto piece_of = [](std::size_t cell) {
+        const std::size_t k = cell % cells_per_quad;
+        return pieces_per_side * pieces_per_side * (cell / cells_per_quad) +
+               pieces_per_side * (k / cell_side / cells_per_piece_side) +
+               k % cell_side / cells_per_piece_side;
+    };
+    std::vector<NormalSum> in_cell(count),
+        on_piece(count / (cells_per_piece_side * cells_per_piece_side));
+    for (std::size_t i = 0; i < normals.size(); ++i)
+        in_cell[cells_per_quad * where[i].quad + cell_at(where[i].u, where[i].v)].add(
+            {normals[i], 1.0});
+    for (std::size_t c = 0; c < count; ++c)
+        on_piece[piece_of(c)].add(in_cell[c]);
+    source_.resize(count);
+    for (std::size_t c = 0; c < count; ++c)
+        source_[c] = (in_cell[c].count > 0.0 ? in_cell[c] : on_piece[piece_of(c)]).direction();
 }
 
 std::vector<Index> FoldGuard::folds(const SplineSurface& surface, const Context& context) const
 {
-    std::vector<Index> folds(surface.patch_count(), 0);
-    if (!ready())
-        return folds;
-    for_each_chunk(context, folds.size(), chunk_quads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin * pieces_per_quad; p < end * pieces_per_quad; ++p)
-            if (!(reference_[p] == Vec3{}))
-                visit_places(surface, static_cast<Index>(p), [&](const Vec3& normal) {
-                    folds[p / pieces_per_quad] += dot(normal, reference_[p]) < 0.0;
-                });
-    });
-    return folds;
+    return of_quads<Index>(surface, source_, context,
+                           [](const QuadPlaces& q) { return q.fold_count(); });
 }
 
 std::vector<double> FoldGuard::smallest_jacobians(const SplineSurface& surface,
                                                   const Context& context) const
 {
-    std::vector<double> smallest(surface.patch_count(), 1.0);
-    if (!ready())
-        return smallest;
-    constexpr double place_count = 9.0 * pieces_per_quad;
-    for_each_chunk(context, smallest.size(), chunk_quads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t q = begin; q < end; ++q) {
-            double sum = 0.0, least = std::numeric_limits<double>::infinity();
-            for (std::size_t p = q * pieces_per_quad; p < (q + 1) * pieces_per_quad; ++p)
-                visit_places(surface, static_cast<Index>(p), [&](const Vec3& normal) {
-                    sum += norm(normal);
-                    if (!(reference_[p] == Vec3{}))
-                        least = std::min(least, dot(normal, reference_[p]));
-                });
-            if (std::isfinite(least))
-                smallest[q] = sum > 0.0 ? least * place_count / sum : 0.0;
-        }
-    });
-    return smallest;
+    return of_quads<double>(surface, source_, context,
+                            [](const QuadPlaces& q) { return q.smallest_jacobian(); });
 }
 
 } // namespace bot2nurbs

@@ -8,29 +8,32 @@
 
 namespace bot2nurbs {
 
-//! Counts places where a fitted surface faces the wrong way.
+//! Finds where a surface runs back over itself, at the places of a 5 x 5 grid on every Bezier
+//! piece. Distances from samples to the surface do not see this between them.
 //!
-//! The start map of the samples has no folds, so the mean source normal of the samples that start
-//! on a Bezier piece says which way the piece should face. Distances from samples to the surface do
-//! not see a fold between them; this does. Without source normals the first surface given serves.
+//! A *fold* is a line in a patch where du x dv passes through zero. A surface may turn by any angle
+//! without one, over a rim narrower than a patch say; but then the normals on both sides come
+//! together as one looks closer, and at a fold they become opposite. A *curl* turns without a fold
+//! and without samples, as where a patch goes over its rim and comes back: its normals are far
+//! from those of the source around.
 class FoldGuard {
 public:
-    FoldGuard(Index quads, const std::vector<Vec3>& normals, const std::vector<DomainPoint>& where);
+    explicit FoldGuard(Index quads) : quads_(quads) {}
 
-    //! True when there are reference normals.
-    bool ready() const { return !reference_.empty(); }
-    //! Takes the reference normals from a surface.
-    void set_reference(const SplineSurface& surface);
-    //! Per quad: places of a 3 x 3 grid on every piece whose normal turns away from the reference
-    //! of the piece; pieces without a clear reference do not count. All zero when not ready.
+    //! Takes unit normals of the source at places of the domain, to know curls by: the mean in
+    //! a cell of a ninth of a piece or, where there are none, on the piece.
+    void set_source(const std::vector<Vec3>& normals, const std::vector<DomainPoint>& where);
+
+    //! Per quad: places on the wrong side of folds (the side with fewer places) or in curls.
     std::vector<Index> folds(const SplineSurface& surface, const Context& context) const;
-    //! Per quad: the smallest Jacobian at those places, the part of du x dv along the reference,
-    //! over the mean length of du x dv on the quad. 1 when not ready.
+    //! Per quad: the smallest |du x dv| at the places, negative where they count as folds, over its
+    //! mean on the quad. 0 where all is one point.
     std::vector<double> smallest_jacobians(const SplineSurface& surface,
                                            const Context& context) const;
 
 private:
-    std::vector<Vec3> reference_; //!< Per piece; zero: none.
+    Index quads_;
+    std::vector<Vec3> source_; //!< Normals, by cells of quads; zero: none.
 };
 
 } // namespace bot2nurbs

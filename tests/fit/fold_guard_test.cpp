@@ -29,40 +29,79 @@ struct FlatGrid {
     }
 };
 
-TEST(FoldGuard, counts_folds_where_they_are)
+//! The middle coefficient of one patch, pulled over a whole neighbouring piece.
+SplineSurface folded_in_7(const FlatGrid& grid)
 {
-    FlatGrid grid;
-    const SurfaceSampleSet samples =
-        sample_target({grid.domain, [](const Vec3& p) { return p; }, {}, 1.0});
-    const FoldGuard guard(grid.domain.complex.quad_count(), samples.normals, samples.domain);
-    ASSERT_TRUE(guard.ready());
-    const Context context;
-    const std::vector<Index> none(grid.domain.complex.quad_count(), 0);
-    EXPECT_EQ(guard.folds(grid.surface, context), none);
-    // The middle coefficient of one patch, pulled over a whole neighbouring piece.
     SplineSurface folded = grid.surface;
     folded.bezier()[SplineNetwork::row(7, 6, 6)] =
         2.0 * grid.surface.bezier(7, 9, 6) - grid.surface.bezier(7, 6, 6);
-    const std::vector<Index> folds = guard.folds(folded, context);
+    return folded;
+}
+
+//! One patch rolled up by some degrees, into a part of a pipe.
+SplineSurface rolled_in_7(const FlatGrid& grid, double degrees)
+{
+    SplineSurface rolled = grid.surface;
+    const double turn = degrees / 57.29577951308232;
+    for (Index i = 0; i < 13; ++i)
+        for (Index j = 0; j < 13; ++j) {
+            const double angle = turn * i / 12.0;
+            rolled.bezier()[SplineNetwork::row(7, i, j)] =
+                grid.surface.bezier(7, 0, j) + Vec3{std::sin(angle), 0.0, 1.0 - std::cos(angle)};
+        }
+    return rolled;
+}
+
+TEST(FoldGuard, counts_folds_where_they_are)
+{
+    const FlatGrid grid;
+    const FoldGuard guard(grid.domain.complex.quad_count());
+    const Context context;
+    const std::vector<Index> none(grid.domain.complex.quad_count(), 0);
+    EXPECT_EQ(guard.folds(grid.surface, context), none);
+    const std::vector<Index> folds = guard.folds(folded_in_7(grid), context);
     EXPECT_GT(folds[7], 0u);
     EXPECT_EQ(more_folded(none, folds), std::vector<Index>{7});
     EXPECT_EQ(more_folded(folds, folds), std::vector<Index>{});
     EXPECT_EQ(more_folded(folds, none), std::vector<Index>{});
 }
 
-TEST(FoldGuard, jacobians_are_one_on_a_regular_grid_and_below_zero_in_a_fold)
+TEST(FoldGuard, takes_a_turn_for_a_fold_at_no_angle)
 {
-    FlatGrid grid;
+    const FlatGrid grid;
+    const FoldGuard guard(grid.domain.complex.quad_count());
+    const Context context;
+    const std::vector<Index> none(grid.domain.complex.quad_count(), 0);
+    // 900 degrees are more than a right angle from one place to the next.
+    for (const double degrees : {60.0, 180.0, 350.0, 900.0})
+        EXPECT_EQ(guard.folds(rolled_in_7(grid, degrees), context), none) << degrees;
+}
+
+TEST(FoldGuard, counts_curls_by_the_normals_of_the_source)
+{
+    const FlatGrid grid;
     const SurfaceSampleSet samples =
         sample_target({grid.domain, [](const Vec3& p) { return p; }, {}, 1.0});
-    const FoldGuard guard(grid.domain.complex.quad_count(), samples.normals, samples.domain);
+    FoldGuard guard(grid.domain.complex.quad_count());
+    guard.set_source(samples.normals, samples.domain);
+    const Context context;
+    const std::vector<Index> none(grid.domain.complex.quad_count(), 0);
+    EXPECT_EQ(guard.folds(grid.surface, context), none);
+    EXPECT_EQ(guard.folds(rolled_in_7(grid, 140.0), context), none);
+    const std::vector<Index> curls = guard.folds(rolled_in_7(grid, 180.0), context);
+    EXPECT_EQ(more_folded(none, curls), std::vector<Index>{7});
+    // From 150 to 180 of 180 degrees: a sixth of the 400 places, give or take a row.
+    EXPECT_NEAR(curls[7], 400.0 / 6.0, 20.0);
+}
+
+TEST(FoldGuard, jacobians_are_one_on_a_regular_grid_and_below_zero_in_a_fold)
+{
+    const FlatGrid grid;
+    const FoldGuard guard(grid.domain.complex.quad_count());
     const Context context;
     for (const double jacobian : guard.smallest_jacobians(grid.surface, context))
         EXPECT_NEAR(jacobian, 1.0, 1e-9);
-    SplineSurface folded = grid.surface;
-    folded.bezier()[SplineNetwork::row(7, 6, 6)] =
-        2.0 * grid.surface.bezier(7, 9, 6) - grid.surface.bezier(7, 6, 6);
-    const std::vector<double> jacobians = guard.smallest_jacobians(folded, context);
+    const std::vector<double> jacobians = guard.smallest_jacobians(folded_in_7(grid), context);
     for (Index q = 0; q < jacobians.size(); ++q)
         EXPECT_EQ(jacobians[q] < 0.0, q == 7) << q;
 }
@@ -87,21 +126,21 @@ FitSummary fit_of_grid_with_narrow_column(double width)
     return fit_network(*network, samples, {}, context)->summary;
 }
 
-// Weighed by area in the first round they fold at a fifth.
-TEST(FoldGuard, patches_do_not_fold_beside_others_five_times_as_wide)
+// Weighed by area in the first round they fold at a fifth; without more fairness there, at a tenth.
+TEST(FoldGuard, patches_do_not_fold_beside_others_fifty_times_as_wide)
 {
-    for (const double width : {0.2, 0.3, 1.0}) {
+    for (const double width : {0.02, 0.05, 0.2, 1.0}) {
         const FitSummary summary = fit_of_grid_with_narrow_column(width);
         EXPECT_EQ(summary.folded_patches, 0u) << width;
         for (const double jacobian : summary.smallest_jacobians)
-            EXPECT_GT(jacobian, 0.1) << width;
+            EXPECT_GT(jacobian, 0.0) << width;
     }
 }
 
 TEST(FoldGuard, a_fit_reports_the_patches_that_fold)
 {
     // A column so narrow that its patches cannot but overshoot.
-    const FitSummary summary = fit_of_grid_with_narrow_column(0.05);
+    const FitSummary summary = fit_of_grid_with_narrow_column(0.005);
     EXPECT_GT(summary.folded_patches, 0u);
     Index below = 0;
     for (const double jacobian : summary.smallest_jacobians)
