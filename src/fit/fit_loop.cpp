@@ -29,10 +29,10 @@ constexpr int least_rounds = 5;
 const double fairness_decay = std::sqrt(0.1);
 //! With more fairness than this a surface is as smooth as it gets.
 constexpr double most_fairness = 1e2;
-//! In the first round quads that fold get so many times the fairness, again and again; three times
-//! in vain, and they have no more than the others.
+//! In the first round quads that fold get so many times the fairness, up to so many times; those
+//! that fold even so have no more than the others.
 constexpr double raise_at_fold = 10.0;
-constexpr int vain_raises = 3;
+constexpr int most_raises = 3;
 //! A quad with this many samples, two for each of its unknowns, keeps the fairness at
 //! `sparse_fairness`; with four times as many the data alone decide down to 1e-7.
 constexpr double sparse_samples = 30.0;
@@ -161,8 +161,13 @@ void FitLoop::scale_fairness(double share)
 {
     last_level_ = level_;
     round_fairness_ = std::max(options_.fairness_floor, share * round_fairness_);
-    for (std::size_t q = 0; q < level_.size(); ++q)
-        level_[q] = std::max(floor_[q], share * level_[q]);
+    // What was raised at folds comes down to the others by the last round but one.
+    const int left = options_.max_rounds - static_cast<int>(summary.rounds.size());
+    for (std::size_t q = 0; q < level_.size(); ++q) {
+        const double level = share * level_[q];
+        const double down = std::pow(round_fairness_ / level, 1.0 / std::max(1, left - 1));
+        level_[q] = std::max(floor_[q], std::min(1.0, down) * level);
+    }
     apply_fairness();
 }
 
@@ -342,27 +347,21 @@ Status FitLoop::raise_at_folds(State& state)
 {
     guard_.set_source(normals, where);
     state.folds = guard_.folds(state.surface, context_);
-    std::vector<int> vain(state.folds.size(), 0);
-    const auto may_rise = [&](Index q) {
-        return state.folds[q] > 0 && vain[q] < vain_raises && level_[q] < most_fairness;
-    };
+    std::vector<int> raises(state.folds.size(), 0);
     for (;;) {
-        const std::vector<Index> before = state.folds;
-        bool raised = false;
-        for (Index q = 0; q < before.size(); ++q)
-            if (may_rise(q)) {
-                level_[q] *= raise_at_fold;
-                raised = true;
-            }
-        if (!raised)
+        bool changed = false;
+        for (Index q = 0; q < raises.size(); ++q) {
+            if (state.folds[q] == 0 || raises[q] > most_raises)
+                continue;
+            changed = true;
+            level_[q] = raises[q]++ < most_raises ? raise_at_fold * level_[q] : round_fairness_;
+        }
+        if (!changed)
             return std::nullopt;
         apply_fairness();
         state = {};
         if (const auto error = first_round(state))
             return error;
-        for (Index q = 0; q < before.size(); ++q)
-            if (before[q] > 0 && state.folds[q] >= before[q] && ++vain[q] == vain_raises)
-                level_[q] = round_fairness_;
     }
 }
 

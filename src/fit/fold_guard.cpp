@@ -22,12 +22,9 @@ constexpr Index places_per_quad = side * side;
 constexpr Index cells_per_piece_side = 3;
 constexpr Index cell_side = cells_per_piece_side * pieces_per_side;
 constexpr Index cells_per_quad = cell_side * cell_side;
-//! Unit normals whose mean is shorter than this span more than about 120 degrees; no direction
-//! stands for them.
-constexpr double clear_mean = 0.5;
-//! Cosine of the angle, 150 degrees, from which a normal is far from that of the source: where the
-//! surface rounds edges and grooves it may well stand across the normals beside them.
-constexpr double far = -0.866;
+//! No cone of normals is taken to be narrower than this, the sine of its half angle: samples are
+//! few.
+constexpr double least_slack = 0.3;
 //! A turn by more than a right angle within this part of the way between two places is a fold.
 constexpr int halvings = 12;
 constexpr std::size_t chunk_quads = 16;
@@ -54,18 +51,22 @@ struct NormalSum {
         sum += other.sum;
         count += other.count;
     }
-    //! Zero when there is no clear one.
-    Vec3 direction() const
-    {
-        return count > 0.0 && norm(sum) >= clear_mean * count ? normalized(sum) : Vec3{};
-    }
 };
+
+//! Minus the cosine of the angle from which a normal is far from these: a right angle beyond their
+//! cone, as the surface may well stand across them where it rounds an edge or a groove. Those of a
+//! cone of half angle a have a mean of length (1 + cos a) / 2.
+double slack_of(const NormalSum& normals)
+{
+    const double cosine = std::max(0.0, 2.0 * norm(normals.sum) / normals.count - 1.0);
+    return std::max(least_slack, std::sqrt(std::max(0.0, 1.0 - cosine * cosine)));
+}
 
 //! The places of one quad.
 class QuadPlaces {
 public:
-    //! `source`: its normals by cells, or null.
-    QuadPlaces(const SplineSurface& surface, Index quad, const Vec3* source)
+    //! `source`: what is known of it, by cells, or null.
+    QuadPlaces(const SplineSurface& surface, Index quad, const FoldGuard::Source* source)
         : surface_(surface), quad_(quad)
     {
         for (Index k = 0; k < places_per_quad; ++k)
@@ -73,7 +74,8 @@ public:
         find_sides_of_folds();
         for (Index k = 0; k < places_per_quad && source != nullptr; ++k) {
             const Place& p = place_[k];
-            if (dot(p.normal, source[cell_at(p.u, p.v)]) < far * norm(p.normal))
+            const FoldGuard::Source& there = source[cell_at(p.u, p.v)];
+            if (dot(p.normal, there.normal) < -there.slack * norm(p.normal))
                 sign_[k] = -1;
         }
     }
@@ -139,8 +141,9 @@ private:
 };
 
 template <class Value, class Measure>
-std::vector<Value> of_quads(const SplineSurface& surface, const std::vector<Vec3>& source,
-                            const Context& context, const Measure& measure)
+std::vector<Value> of_quads(const SplineSurface& surface,
+                            const std::vector<FoldGuard::Source>& source, const Context& context,
+                            const Measure& measure)
 {
     std::vector<Value> values(surface.patch_count());
     for_each_chunk(context, values.size(), chunk_quads, [&](std::size_t begin, std::size_t end) {
@@ -169,9 +172,13 @@ void FoldGuard::set_source(const std::vector<Vec3>& normals, const std::vector<D
             {normals[i], 1.0});
     for (std::size_t c = 0; c < count; ++c)
         on_piece[piece_of(c)].add(in_cell[c]);
-    source_.resize(count);
-    for (std::size_t c = 0; c < count; ++c)
-        source_[c] = (in_cell[c].count > 0.0 ? in_cell[c] : on_piece[piece_of(c)]).direction();
+    source_.assign(count, {});
+    for (std::size_t c = 0; c < count; ++c) {
+        const NormalSum& around = on_piece[piece_of(c)];
+        const NormalSum& here = in_cell[c].count > 0.0 ? in_cell[c] : around;
+        if (around.count > 0.0)
+            source_[c] = {normalized(here.sum), slack_of(around)};
+    }
 }
 
 std::vector<Index> FoldGuard::folds(const SplineSurface& surface, const Context& context) const

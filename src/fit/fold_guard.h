@@ -20,6 +20,12 @@ class FoldGuard {
 public:
     explicit FoldGuard(Index quads) : quads_(quads) {}
 
+    //! What is known of the source in a cell of the domain.
+    struct Source {
+        Vec3 normal;        //!< Unit mean; zero: nothing.
+        double slack = 0.0; //!< Minus the cosine of the angle from which normals are far from it.
+    };
+
     //! Takes unit normals of the source at places of the domain, to know curls by: the mean in
     //! a cell of a ninth of a piece or, where there are none, on the piece.
     void set_source(const std::vector<Vec3>& normals, const std::vector<DomainPoint>& where);
@@ -33,7 +39,7 @@ public:
 
 private:
     Index quads_;
-    std::vector<Vec3> source_; //!< Normals, by cells of quads; zero: none.
+    std::vector<Source> source_; //!< By cells of quads.
 };
 
 } // namespace bot2nurbs

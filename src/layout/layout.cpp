@@ -196,7 +196,7 @@ Result<Quads> make_quads(const ManifoldMesh& source, const LayoutOptions& option
             Result<PatchComplex> lifted = on_carrier(quads);
             if (!lifted)
                 return lifted.error();
-            if (is_simple(*lifted))
+            if (is_simple(*lifted) && has_enough_quads(*lifted))
                 return Quads{nullptr, std::move(*lifted)};
         }
     }
@@ -222,6 +222,9 @@ Result<Quads> make_quads(const ManifoldMesh& source, const LayoutOptions& option
         return Context::cancelled_error("layout");
     if (!is_simple(split->complex))
         return Error{ErrorCode::layout_failed, "two edges of the layout join the same vertices",
+                     invalid_index};
+    if (!has_enough_quads(split->complex))
+        return Error{ErrorCode::layout_failed, "a vertex of the layout has only two quads",
                      invalid_index};
     return Quads{std::move(split->carrier), std::move(split->complex)};
 }

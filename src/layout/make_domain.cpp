@@ -18,6 +18,20 @@ bool is_simple(const PatchComplex& quads)
     return std::adjacent_find(ends.begin(), ends.end()) == ends.end();
 }
 
+bool has_enough_quads(const PatchComplex& quads)
+{
+    for (const PatchComplex::Side& s : quads.vertex_sides()) {
+        const std::vector<PatchComplex::Side> star = quads.star(s);
+        const bool inside = quads.face_at(star.back()) != invalid_index;
+        const auto creases = std::count_if(star.begin(), star.end(), [&](const auto& spoke) {
+            return quads.paths()[spoke.path].mark == mark_of(FeatureKind::crease);
+        });
+        if (inside && star.size() < 3 && creases < 2)
+            return false;
+    }
+    return true;
+}
+
 Result<QuadDomain> make_domain(const PatchComplex& quads, CarrierMesh carrier,
                                const std::vector<char>& is_corner)
 {

@@ -16,10 +16,15 @@ constexpr double asked_weight = 2.0;
 // many edges again.
 constexpr int max_quad_valence = 6;
 constexpr int max_triangle_valence = 9;
-// Vertices of degree two inside K, and boundary vertices whose one corner is nearly flat or more,
-// are worth this much to remove, so that it is done by whatever change distorts least, and they
-// are never made.
+// Boundary vertices with corners that are nearly flat or more are worth this much to remove, so
+// that it is done by whatever change distorts least, and they are made only where all else is
+// worse.
 constexpr double degenerate_cost = 10.0;
+// Those that splines do not exist at are made nowhere: of degree two inside, and at the ends of
+// darts, where the boundary turns back and both its sides become one crease inside.
+constexpr double forbidden_cost = 1e6;
+// Right angles from which a boundary vertex is the end of a dart.
+constexpr double dart_end = 3.5;
 // Corners wider than this many right angles count as flat.
 constexpr double flat_corner = 1.7;
 
@@ -59,8 +64,10 @@ bool Valences::is_degenerate(Index vertex, int by) const
 
 double Valences::cost(Index vertex, int edges) const
 {
-    if (is_degenerate(vertex, edges - count_[vertex]))
-        return degenerate_cost;
+    if (is_degenerate(vertex, edges - count_[vertex])) {
+        const double turn = sides_ == 4 ? dart_end : 1.5 * dart_end;
+        return is_inside(vertex) || angle_[vertex] > turn ? forbidden_cost : degenerate_cost;
+    }
     const double d = static_cast<double>(edges) - wanted(vertex);
     if (asked_.count(vertex) != 0)
         return asked_weight * d * d;

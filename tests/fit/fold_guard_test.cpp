@@ -87,11 +87,11 @@ TEST(FoldGuard, counts_curls_by_the_normals_of_the_source)
     const Context context;
     const std::vector<Index> none(grid.domain.complex.quad_count(), 0);
     EXPECT_EQ(guard.folds(grid.surface, context), none);
-    EXPECT_EQ(guard.folds(rolled_in_7(grid, 140.0), context), none);
+    EXPECT_EQ(guard.folds(rolled_in_7(grid, 105.0), context), none);
     const std::vector<Index> curls = guard.folds(rolled_in_7(grid, 180.0), context);
     EXPECT_EQ(more_folded(none, curls), std::vector<Index>{7});
-    // From 150 to 180 of 180 degrees: a sixth of the 400 places, give or take a row.
-    EXPECT_NEAR(curls[7], 400.0 / 6.0, 20.0);
+    // A flat source has no slack but the least, 17 degrees: from 107 to 180 of 180 degrees.
+    EXPECT_NEAR(curls[7], 400.0 * 73.0 / 180.0, 20.0);
 }
 
 TEST(FoldGuard, jacobians_are_one_on_a_regular_grid_and_below_zero_in_a_fold)
@@ -126,15 +126,32 @@ FitSummary fit_of_grid_with_narrow_column(double width)
     return fit_network(*network, samples, {}, context)->summary;
 }
 
-// Weighed by area in the first round they fold at a fifth; without more fairness there, at a tenth.
-TEST(FoldGuard, patches_do_not_fold_beside_others_fifty_times_as_wide)
+// Weighed by area in the first round they fold at a fifth.
+TEST(FoldGuard, patches_do_not_fold_beside_others_ten_times_as_wide)
 {
-    for (const double width : {0.02, 0.05, 0.2, 1.0}) {
+    for (const double width : {0.1, 0.2, 1.0}) {
         const FitSummary summary = fit_of_grid_with_narrow_column(width);
         EXPECT_EQ(summary.folded_patches, 0u) << width;
         for (const double jacobian : summary.smallest_jacobians)
             EXPECT_GT(jacobian, 0.0) << width;
     }
+}
+
+TEST(FoldGuard, a_curved_source_has_slack)
+{
+    // Normals of the source turn by 160 degrees along every piece of the patch: whatever a surface
+    // does there, it is near one of them.
+    const FlatGrid grid;
+    SurfaceSampleSet samples =
+        sample_target({grid.domain, [](const Vec3& p) { return p; }, {}, 1.0});
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const double t = 4.0 * samples.domain[i].u, angle = 2.8 * (t - std::floor(t) - 0.5);
+        samples.normals[i] = {std::sin(angle), 0.0, std::cos(angle)};
+    }
+    FoldGuard guard(grid.domain.complex.quad_count());
+    guard.set_source(samples.normals, samples.domain);
+    const std::vector<Index> none(grid.domain.complex.quad_count(), 0);
+    EXPECT_EQ(guard.folds(rolled_in_7(grid, 60.0), Context()), none);
 }
 
 TEST(FoldGuard, a_fit_reports_the_patches_that_fold)

@@ -2,6 +2,7 @@
 #include "layout/base_complex.h"
 #include "layout/face_energy.h"
 #include "layout/improve.h"
+#include "layout/make_domain.h"
 #include "layout/pair_triangles.h"
 #include "layout/split_in_quads.h"
 
@@ -136,6 +137,34 @@ TEST(QuadLayout, pairs_every_triangle_and_stays_sound_through_improvement)
         improve_quads(complex, 6, {density, surface_area(mesh) / 12.0}, context);
         expect_sound(complex, 4, name + " improved");
     }
+}
+
+TEST(QuadLayout, a_vertex_inside_with_two_quads_is_noticed)
+{
+    const ManifoldMesh mesh = icosphere(4);
+    PatchComplex complex = base_complex(mesh, 40);
+    Context context;
+    ASSERT_TRUE(*pair_triangles(complex, {}, context));
+    const std::vector<double> density(mesh.vertex_count(), 1.0);
+    improve_quads(complex, 20, {density, surface_area(mesh) / 20.0}, context);
+    EXPECT_TRUE(has_enough_quads(complex));
+    // A new vertex in a quad, joined to two of its corners.
+    OverlayBuilder builder(mesh);
+    const std::vector<PatchComplex::Side> sides = complex.faces()[0].sides;
+    const auto disk = map_disk(builder, complex.geometry(sides));
+    ASSERT_TRUE(disk);
+    Index inner = invalid_index;
+    for (Index v = disk->overlay.boundary_count; v < disk->overlay.vertices.size(); ++v)
+        if (disk->overlay.vertices[v].mesh_vertex != invalid_index)
+            inner = disk->overlay.vertices[v].mesh_vertex;
+    ASSERT_NE(inner, invalid_index);
+    auto change = complex.plan({0}, sides, {{0, invalid_index}, {2, invalid_index}}, *disk, inner);
+    ASSERT_TRUE(change);
+    complex.apply(std::move(*change));
+    EXPECT_FALSE(has_enough_quads(complex));
+    // Improvement removes it.
+    improve_quads(complex, 20, {density, surface_area(mesh) / 20.0}, context);
+    EXPECT_TRUE(has_enough_quads(complex));
 }
 
 TEST(FaceEnergy, of_a_small_patch_is_that_of_one_half_as_large_as_wanted)
