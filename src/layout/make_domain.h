@@ -9,9 +9,9 @@ namespace bot2nurbs {
 //! Whether no two paths join the same vertices: edges of a domain are told by their ends.
 bool is_simple(const PatchComplex& quads);
 
-//! Whether every vertex inside has the quads that splines need there: three, or two between creases.
-//! Improvement sees to it by whatever changes there are, which at the end of a dart between curves
-//! may be none.
+//! Whether every vertex inside has the quads that splines need there: three, or two between
+//! creases. Improvement sees to it by whatever changes there are, which at the end of a dart
+//! between curves may be none.
 bool has_enough_quads(const PatchComplex& quads);
 
 //! A compact complex of quads on a carrier as a domain, with the creases that its marks say and
