@@ -5,6 +5,7 @@
 #include "layout/make_domain.h"
 #include "layout/pair_triangles.h"
 #include "layout/split_in_quads.h"
+#include "layout/valences.h"
 
 #include "maps/patches.h"
 #include "mesh_fixtures.h"
@@ -137,6 +138,31 @@ TEST(QuadLayout, pairs_every_triangle_and_stays_sound_through_improvement)
         improve_quads(complex, 6, {density, surface_area(mesh) / 12.0}, context);
         expect_sound(complex, 4, name + " improved");
     }
+}
+
+TEST(Valences, take_the_angle_that_was_said_for_that_of_the_mesh)
+{
+    const ManifoldMesh mesh = square(8);
+    PatchComplex complex = base_complex(mesh, 12);
+    Index v = invalid_index; // Where the boundary runs straight on.
+    for (const auto& side : complex.vertex_sides())
+        if (mesh.is_boundary_vertex(complex.start(side)) &&
+            std::fabs(boundary_angle(mesh, complex.start(side)) - 3.141592653589793) < 1e-9)
+            v = complex.start(side);
+    ASSERT_NE(v, invalid_index);
+    const auto best = [&] {
+        const Valences valences(complex, 4);
+        int cheapest = 2;
+        for (int edges = 2; edges < 7; ++edges)
+            if (valences.cost(v, edges) < valences.cost(v, cheapest))
+                cheapest = edges;
+        return cheapest;
+    };
+    EXPECT_EQ(best(), 3);
+    complex.set_boundary_angle(v, 1.5 * 3.141592653589793);
+    EXPECT_EQ(best(), 4);
+    complex.set_boundary_angle(v, 0.5 * 3.141592653589793);
+    EXPECT_EQ(best(), 2);
 }
 
 TEST(QuadLayout, a_vertex_inside_with_two_quads_is_noticed)
