@@ -6,9 +6,13 @@ cd "$(dirname "$0")/.."
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-for model in bracket.ply arch.obj hood.obj; do
+for model in bracket.ply arch.obj hood.obj knot.ply torso.off; do
     scripts/render.py "examples/$model" "$work/${model%.*}" > "$work/log" 2>&1
 done
 cp "$work/bracket-layout.png" docs/images/bracket.png
 cp "$work/bracket-zebra.png" "$work/bracket-error.png" "$work/arch-zebra.png" docs/images
 cp "$work/hood-layout.png" docs/images/hood.png
+# Of docs/results/pictures.md, with the first.
+for model in knot torso; do
+    cp "$work/$model-layout.png" "$work/$model-error.png" docs/images
+done

@@ -25,7 +25,8 @@ constexpr Index cells_per_quad = cell_side * cell_side;
 //! No cone of normals is taken to be narrower than this, the sine of its half angle: samples are
 //! few.
 constexpr double least_slack = 0.3;
-//! A turn by more than a right angle within this part of the way between two places is a fold.
+//! Places whose normals are opposed even when the way between them was halved so often are on
+//! either side of a fold.
 constexpr int halvings = 12;
 constexpr std::size_t chunk_quads = 16;
 
