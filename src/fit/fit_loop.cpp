@@ -385,8 +385,10 @@ Status FitLoop::next_round(State& state, double& mu, bool& stuck)
             if (!folded.empty())
                 response_.respond(folded, mu);
             if (!folded.empty() && answers++ < max_answers) {
+                // Not more than at the beginning, for what was raised at folds must come down.
                 for (const Index q : folded)
-                    floor_[q] = level_[q] = std::max(floor_[q], last_level_[q]);
+                    floor_[q] = level_[q] =
+                        std::max(floor_[q], std::min(options_.fairness, last_level_[q]));
                 apply_fairness();
                 continue;
             }
