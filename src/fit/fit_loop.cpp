@@ -278,11 +278,14 @@ FitLoop::State FitLoop::moved_without_folds(const State& state, std::vector<Vec3
     return more_folded(state.folds, next.folds).empty() ? next : moved(state, {});
 }
 
-void FitLoop::find_feet(State& state) const
+Status FitLoop::find_feet(State& state) const
 {
     state.quad_energy = quad_energies(state.surface, context_);
     state.feet =
         correct_parameters(network_.complex, state.surface, points, where, on_curve, context_);
+    if (context_.cancelled())
+        return Context::cancelled_error("fit");
+    return std::nullopt;
 }
 
 NormalSystem::Solution FitLoop::solve(const State& state, const std::vector<FitRow>& rows,
@@ -318,9 +321,6 @@ Status FitLoop::first_round(State& state)
         return Error{ErrorCode::fit_failed, "the first least-squares system could not be solved",
                      invalid_index};
     state = moved(state, solution.move);
-    find_feet(state);
-    if (context_.cancelled())
-        return Context::cancelled_error("fit");
     return std::nullopt;
 }
 
@@ -334,10 +334,14 @@ double FitLoop::rms_distance(const State& state) const
 
 Status FitLoop::raise_to_noise(State& state)
 {
+    if (const auto error = find_feet(state))
+        return error;
     while (rms_distance(state) < options_.noise && round_fairness_ < most_fairness) {
         scale_fairness(1.0 / fairness_decay);
         state = {};
         if (const auto error = first_round(state))
+            return error;
+        if (const auto error = find_feet(state))
             return error;
     }
     return std::nullopt;
@@ -357,12 +361,13 @@ Status FitLoop::raise_at_folds(State& state)
             level_[q] = raises[q]++ < most_raises ? raise_at_fold * level_[q] : round_fairness_;
         }
         if (!changed)
-            return std::nullopt;
+            break;
         apply_fairness();
         state = {};
         if (const auto error = first_round(state))
             return error;
     }
+    return state.feet.empty() ? find_feet(state) : std::nullopt;
 }
 
 Status FitLoop::next_round(State& state, double& mu, bool& stuck)
@@ -395,9 +400,8 @@ Status FitLoop::next_round(State& state, double& mu, bool& stuck)
             for (double share = 1.0; share >= least_step; share *= 0.5) {
                 if (!folded.empty() || share < 1.0)
                     next = moved_without_folds(state, solution.move);
-                find_feet(next);
-                if (context_.cancelled())
-                    return Context::cancelled_error("fit");
+                if (const auto error = find_feet(next))
+                    return error;
                 if (objective(next, factors) <= objective(state, factors) * (1.0 + rounding)) {
                     state = std::move(next);
                     return std::nullopt;

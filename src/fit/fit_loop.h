@@ -42,6 +42,7 @@ private:
         std::vector<Index> folds;        //!< Per quad.
     };
 
+    //! Without feet.
     Status first_round(State& state);
     //! \return true in `stuck` when no step lowers the objective without new folds.
     Status next_round(State& state, double& mu, bool& stuck);
@@ -51,8 +52,8 @@ private:
     State moved(const State& state, const std::vector<Vec3>& move) const;
     //! Like `moved`, after shortening the move where it folds, as little as it takes.
     State moved_without_folds(const State& state, std::vector<Vec3> move) const;
-    //! Adds the feet; none when cancelled.
-    void find_feet(State& state) const;
+    //! Adds the feet. Errors: cancelled.
+    Status find_feet(State& state) const;
     //! Rows of all samples, as the fold response wants them.
     std::vector<FitRow> rows_at(const State& state, const std::vector<double>& factors) const;
     //! What the distances make of the weights: more with emphasis, less where robust; and more in
@@ -71,10 +72,9 @@ private:
     void scale_fairness(double share);
     //! Repeats the first round with more fairness while the surface follows the noise.
     Status raise_to_noise(State& state);
-    //! Repeats the first round with more fairness in quads that fold, as long as that helps: what
-    //! folds in it, later rounds hardly unfold. Parameters whose speed varies much make surfaces of
-    //! few pieces overshoot. Ends: a quad is raised until it does not fold, or three times in vain,
-    //! or up to most_fairness.
+    //! Repeats the first round with more fairness in quads that fold: what folds in it, later
+    //! rounds hardly unfold. Parameters whose speed varies much make surfaces of few pieces
+    //! overshoot. Ends: a quad is raised at most most_raises times, and brought back once.
     Status raise_at_folds(State& state);
     double rms_distance(const State& state) const;
     void apply_fairness();

@@ -83,8 +83,7 @@ public:
 
     Index fold_count() const
     {
-        const auto wrong = std::count(sign_.begin(), sign_.end(), -1);
-        return std::max(static_cast<Index>(wrong), Index{folded_});
+        return static_cast<Index>(std::count(sign_.begin(), sign_.end(), -1));
     }
     double smallest_jacobian() const
     {
@@ -126,19 +125,19 @@ private:
             const Index before = k % side > 0 ? k - 1 : k - side;
             sign_[k] = fold_between(place_[before], place_[k]) ? -sign_[before] : sign_[before];
         }
-        // That sees no fold which ends between two rows.
-        for (Index k = side; k < places_per_quad && !folded_; ++k)
-            folded_ = fold_between(place_[k - side], place_[k]);
-        if (2 * std::count(sign_.begin(), sign_.end(), -1) > std::ptrdiff_t{places_per_quad})
+        if (2 * fold_count() > places_per_quad)
             for (int& s : sign_)
                 s = -s;
+        // A fold that ends inside changes the sign one way round its end and not the other.
+        for (Index k = side; k < places_per_quad; ++k)
+            if (sign_[k] == sign_[k - side] && fold_between(place_[k - side], place_[k]))
+                sign_[k] = -1;
     }
 
     const SplineSurface& surface_;
     Index quad_;
     std::array<Place, places_per_quad> place_;
     std::array<int, places_per_quad> sign_{};
-    bool folded_ = false;
 };
 
 template <class Value, class Measure>

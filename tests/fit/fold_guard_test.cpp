@@ -129,11 +129,11 @@ FitSummary fit_of_grid_with_narrow_column(double width)
 // Weighed by area in the first round they fold at a fifth.
 TEST(FoldGuard, patches_do_not_fold_beside_others_ten_times_as_wide)
 {
-    for (const double width : {0.1, 0.2, 1.0}) {
+    for (const double width : {0.1, 0.2, 0.3, 1.0}) {
         const FitSummary summary = fit_of_grid_with_narrow_column(width);
         EXPECT_EQ(summary.folded_patches, 0u) << width;
         for (const double jacobian : summary.smallest_jacobians)
-            EXPECT_GT(jacobian, 0.0) << width;
+            EXPECT_GT(jacobian, width < 0.2 ? 0.0 : 0.1) << width;
     }
 }
 

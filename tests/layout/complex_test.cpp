@@ -166,6 +166,23 @@ TEST(Valences, take_the_angle_that_was_said_for_that_of_the_mesh)
     EXPECT_EQ(best(), 2);
 }
 
+TEST(Valences, forbid_two_quads_at_the_end_of_a_dart_and_only_dislike_a_flat_corner)
+{
+    const ManifoldMesh mesh = square(8);
+    PatchComplex complex = base_complex(mesh, 12);
+    const std::vector<PatchComplex::Side> sides = complex.vertex_sides();
+    const auto at_boundary = std::find_if(sides.begin(), sides.end(), [&](const auto& s) {
+        return mesh.is_boundary_vertex(complex.start(s));
+    });
+    ASSERT_NE(at_boundary, sides.end());
+    const Index v = complex.start(*at_boundary);
+    complex.set_boundary_angle(v, 2.0 * 3.141592653589793);
+    EXPECT_GT(Valences(complex, 4).cost(v, 3), 1e5);
+    EXPECT_LT(Valences(complex, 4).cost(v, 4), 10.0);
+    complex.set_boundary_angle(v, 3.141592653589793);
+    EXPECT_LT(Valences(complex, 4).cost(v, 2), 100.0);
+}
+
 TEST(QuadLayout, a_vertex_inside_with_two_quads_is_noticed)
 {
     const ManifoldMesh mesh = icosphere(4);
