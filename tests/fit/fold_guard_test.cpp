@@ -72,9 +72,28 @@ TEST(FoldGuard, takes_a_turn_for_a_fold_at_no_angle)
     const FoldGuard guard(grid.domain.complex.quad_count());
     const Context context;
     const std::vector<Index> none(grid.domain.complex.quad_count(), 0);
-    // 900 degrees are more than a right angle from one place to the next.
     for (const double degrees : {60.0, 180.0, 350.0, 900.0})
         EXPECT_EQ(guard.folds(rolled_in_7(grid, degrees), context), none) << degrees;
+}
+
+TEST(FoldGuard, takes_a_turn_between_two_places_for_no_fold)
+{
+    // Straight on, a hairpin in one piece, and straight back above: nearly all of the half turn is
+    // in a hundredth of the way, but it is one.
+    constexpr double above = 0.01;
+    const double x[13] = {0.0, 0.3, 0.6, 0.9, 1.9, 2.0, 0.9, 0.8, 0.7, 0.6, 0.4, 0.2, 0.0};
+    const FlatGrid grid;
+    SplineSurface turned = grid.surface;
+    for (Index i = 0; i < 13; ++i)
+        for (Index j = 0; j < 13; ++j)
+            turned.bezier()[SplineNetwork::row(7, i, j)] =
+                grid.surface.bezier(7, 0, j) + Vec3{x[i], 0.0, i < 5 ? 0.0 : above};
+    const FoldGuard guard(grid.domain.complex.quad_count());
+    EXPECT_EQ(guard.folds(turned, Context())[7], 0u);
+    // Pressed flat it is a fold.
+    for (Vec3& c : turned.bezier())
+        c.z = 0.0;
+    EXPECT_GT(guard.folds(turned, Context())[7], 0u);
 }
 
 TEST(FoldGuard, counts_curls_by_the_normals_of_the_source)
