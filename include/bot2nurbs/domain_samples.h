@@ -52,13 +52,35 @@ void add_curve_samples(const ManifoldMesh& source, const QuadComplex& complex,
                        const std::vector<QuadChart>& charts, const SampleOptions& options,
                        SurfaceSampleSet& samples);
 
-//! Given points as samples: each placed at its closest point of the source, and where the charts
-//! map that. Normals stay unknown. Cost O((F + n) log F). Errors: invalid_domain (no chart covers a
-//! face), cancelled. The same for any thread count. \pre as many positive weights as points
+//! Points that a surface is fitted to in place of the mesh that was made through them, which then
+//! says no more than how the surface is connected, and where it is when there are no points.
+struct PointData {
+    std::vector<Vec3> positions;
+    std::vector<double> weights; //!< Per point: the area it stands for times its confidence; > 0.
+    std::vector<SourcePoint> source; //!< Per point: its closest place of the mesh.
+    double noise = 0.0;              //!< See FitOptions::noise, in units of the points.
+    double least_deviation = 0.0;    //!< See FitOptions::least_deviation.
+};
+
+//! Closest places of the mesh. Cost O((F + n) log F). Errors: cancelled. The same for any thread
+//! count.
+Result<std::vector<SourcePoint>> closest_places(const ManifoldMesh& source,
+                                                const std::vector<Vec3>& points, Context& context);
+
+//! Given points as samples: each where the charts map its place of the source. Normals stay
+//! unknown. Cost linear. Errors: invalid_domain (no chart covers a face), cancelled. The same for
+//! any thread count. \pre the arrays of `points` are of one length
 Result<SurfaceSampleSet> project_samples(const ManifoldMesh& source,
                                          const std::vector<QuadChart>& charts,
-                                         const std::vector<Vec3>& points,
-                                         const std::vector<double>& weights, Context& context);
+                                         const PointData& points, Context& context);
+
+//! The samples of a fit to points: project_samples(), add_anchor_samples() and add_curve_samples()
+//! one after the other; the first samples are the points. \param anchors how many samples of the
+//! source stand in for points. Errors: those of the three.
+Result<SurfaceSampleSet> make_point_samples(const ManifoldMesh& source, const QuadComplex& complex,
+                                            const std::vector<QuadChart>& charts,
+                                            const PointData& points, Index& anchors,
+                                            Context& context);
 
 //! Adds a sample of the source in every Bezier piece (4 x 4 a quad) that has none, with the area of
 //! the piece as weight: it holds the surface where there are no data. For samples without normals.

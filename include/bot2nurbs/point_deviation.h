@@ -19,11 +19,17 @@ struct PointDeviation {
     Index far_points = 0;
 };
 
-//! Distances of points from their closest places of the surface. Cost O(n log P). Errors:
-//! empty_input (no patch), cancelled.
-Result<std::vector<double>> point_distances(const std::vector<Vec3>& points,
-                                            const QuadComplex& complex,
-                                            const SplineSurface& surface, Context& context);
+//! A place of the surface that is near a point.
+struct PointFoot {
+    DomainPoint where;
+    double distance = 0.0; //!< From the point; the surface is no farther from it than this.
+};
+
+//! The closest places of the surface, each a local minimum of the distance that is sought from
+//! where a tessellation is closest. Cost O(n log P). Errors: empty_input (no patch), cancelled.
+Result<std::vector<PointFoot>> find_point_feet(const std::vector<Vec3>& points,
+                                               const QuadComplex& complex,
+                                               const SplineSurface& surface, Context& context);
 
 //! \pre distances are finite
 PointDeviation summarise_distances(const std::vector<double>& distances,

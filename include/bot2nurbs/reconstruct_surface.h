@@ -18,8 +18,9 @@ struct ReconstructOptions {
     //! start, not the shape.
     Index most_vertices = 100000;
     //! Holes up to this size across, as a fraction of the diagonal of the points, are filled;
-    //! larger ones stay open.
-    double fill_holes = 0.1;
+    //! larger ones stay open. By default only gaps of up to five spacings of the points around
+    //! them, such as scattered points leave by chance.
+    std::optional<double> fill_holes;
 
     std::optional<Error> check() const;
 };
@@ -36,8 +37,9 @@ const char* name(CloudTopology topology);
 
 //! A part of the reconstructed surface without points near it.
 struct CloudHole {
-    Vec3 place;        //!< The place farthest from the points.
-    double size = 0.0; //!< Twice its distance to them: about the width of the hole.
+    Vec3 place;            //!< The place farthest from the points.
+    double size = 0.0;     //!< Twice its distance to them: about the width of the hole.
+    double spacings = 0.0; //!< The same over the spacing of the points there, less their noise.
     double area = 0.0;
     bool filled = false;
 };
@@ -66,8 +68,8 @@ struct Reconstruction {
 //!
 //! A place farther than 2.2 spacings from every point (and three deviations of the noise) lies in a
 //! hole, which reaches out to 1.5 spacings from the points. Holes larger than options.fill_holes
-//! are cut out. Components with fewer than 30 points near them, or more than half without any, are
-//! dropped (never the one with most points).
+//! allows are cut out. Components with fewer than 30 points near them, or more than half without
+//! any, are dropped (never the one with most points).
 //!
 //! The topology is uncertain if the genus changes when the octree's cells are halved, if points
 //! contradict each other about inside and outside (`disagreement`, from orient_normals()), if the

@@ -39,6 +39,8 @@ enum class RefinementEnd {
     tolerance_met, //!< Proven: the upper bound of the distance both ways is within the tolerance.
     patch_limit,   //!< No patch that is beyond tolerance can be cut within max_patches, with what
                    //!< must be cut around it.
+    noise_limit,   //!< Points: what is farther than the tolerance is no farther than their noise
+                   //!< alone puts points, see noise_reach().
     stalled,       //!< Several rounds have lowered neither the distance nor what is beyond it.
     quality_limit, //!< A patch that is beyond tolerance cannot be cut, or its pieces not be fitted.
 };
@@ -68,16 +70,28 @@ struct ToleranceFit {
     RefinementEnd termination = RefinementEnd::tolerance_met;
 };
 
+//! The distance that normal noise of this standard deviation is not expected to put any of `count`
+//! points beyond: sqrt(2 ln(2 count)) deviations, a bound of the expected largest of so many sizes
+//! of normal variables \cite boucheron_2013 (theorem 2.5), and half a deviation for its spread and
+//! that of the estimate. 0 for no points.
+double noise_reach(double noise, std::size_t count);
+
 //! Fits a spline surface within a tolerance of a mesh, on a domain refined where it must be: fit,
 //! bound the distance of every patch, cut the patches that are beyond, close the marks, cut the
 //! domain, and fit again. How, and why it ends: docs/algorithms/refinement.md. Cost: that of the
 //! last fit times a small number, as the patches grow by a share each round. Same result for any
 //! number of threads. \cite eck_hoppe_1996
 //!
+//! With `points` the surface is fitted to them, robustly, and the distance is theirs from it, one
+//! way; patches all of whose points are within noise_reach() are not cut, as more patches would
+//! follow the noise.
+//!
 //! \pre the domain is valid. Errors: bad_option; those of compute_charts(), make_samples(),
-//! build_spline_network(), fit_network(), bound_hausdorff(); cancelled.
+//! make_point_samples(), build_spline_network(), fit_network(), bound_hausdorff(),
+//! find_point_feet(); cancelled.
 Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain start,
-                                         const ToleranceOptions& options, Context& context);
+                                         const ToleranceOptions& options, const PointData* points,
+                                         Context& context);
 
 //! A layout to start from: the coarsest of a few, each a share finer than the last, of whose
 //! patches nine tenths are within the tolerance; else the finest within max_patches, or the last
@@ -85,6 +99,7 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
 //! everywhere would copy their shapes, and need more of them. `layout.patches` is not used. Errors:
 //! bad_option; those of build_layout() and of refine_to_tolerance().
 Result<LayoutResult> layout_for_tolerance(const ManifoldMesh& source, LayoutOptions layout,
-                                          const ToleranceOptions& options, Context& context);
+                                          const ToleranceOptions& options, const PointData* points,
+                                          Context& context);
 
 } // namespace bot2nurbs

@@ -20,22 +20,23 @@ constexpr double far_deviations = 3.0;
 
 } // namespace
 
-Result<std::vector<double>> point_distances(const std::vector<Vec3>& points,
-                                            const QuadComplex& complex,
-                                            const SplineSurface& surface, Context& context)
+Result<std::vector<PointFoot>> find_point_feet(const std::vector<Vec3>& points,
+                                               const QuadComplex& complex,
+                                               const SplineSurface& surface, Context& context)
 {
     if (surface.patch_count() == 0)
         return Error{ErrorCode::empty_input, "no surface to measure from", invalid_index};
     const SurfaceLocator locator(complex, surface, seed_cells, &context);
-    std::vector<double> distances(points.size());
-    if (context.cancelled() || !for_each_chunk(context, points.size(), points_per_chunk,
-                                               [&](std::size_t begin, std::size_t end) {
-                                                   for (std::size_t i = begin; i < end; ++i)
-                                                       distances[i] =
-                                                           locator.closest(points[i]).distance;
-                                               }))
+    std::vector<PointFoot> feet(points.size());
+    const auto find = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const FootPoint foot = locator.closest(points[i]);
+            feet[i] = {foot.where, foot.distance};
+        }
+    };
+    if (context.cancelled() || !for_each_chunk(context, points.size(), points_per_chunk, find))
         return Context::cancelled_error("deviation");
-    return distances;
+    return feet;
 }
 
 PointDeviation summarise_distances(const std::vector<double>& distances, double least_deviation)

@@ -25,6 +25,10 @@ constexpr double most_disagreement = 0.005;
 //! they do not have.
 constexpr double most_noise_ratio = 0.175;
 
+//! Width of the gaps, in spacings, that are taken for chance: points scattered evenly leave a disk
+//! so wide empty with a chance of 3e-9 at any place.
+constexpr double chance_spacings = 5.0;
+
 std::string percent(double share)
 {
     const double tenths = std::round(1000.0 * share);
@@ -96,10 +100,11 @@ Result<TrimmedSurface> trimmed_surface(const std::vector<Vec3>& points,
         std::accumulate(coverage->uncovered.begin(), coverage->uncovered.end(), 0.0) /
         std::accumulate(coverage->area.begin(), coverage->area.end(), 0.0);
     SurfaceHoles holes = find_holes(result.mesh, *coverage);
-    const double largest = options.fill_holes * diagonal_of(points, estimate);
+    const double diagonal = diagonal_of(points, estimate);
     std::vector<char> cut;
     for (CloudHole& hole : holes.holes) {
-        hole.filled = hole.size <= largest;
+        hole.filled = options.fill_holes ? hole.size <= *options.fill_holes * diagonal
+                                         : hole.spacings <= chance_spacings;
         cut.push_back(!hole.filled);
     }
     result.opened = std::count(cut.begin(), cut.end(), 1) > 0;
@@ -221,7 +226,7 @@ std::optional<Error> ReconstructOptions::check() const
     if (depth && (*depth < 3 || *depth > 12))
         return Error{ErrorCode::bad_option,
                      "the depth " + std::to_string(*depth) + " is not in 3 .. 12", invalid_index};
-    if (!(fill_holes >= 0.0 && fill_holes <= 1.0))
+    if (fill_holes && !(*fill_holes >= 0.0 && *fill_holes <= 1.0))
         return Error{ErrorCode::bad_option, "the size of holes to fill is not in 0 .. 1",
                      invalid_index};
     if (most_vertices < 1000)

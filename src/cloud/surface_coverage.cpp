@@ -167,6 +167,7 @@ SurfaceHoles find_holes(const TriangleSoup& mesh, const SurfaceCoverage& coverag
             found.size = 2.0 * coverage.distance[v];
             found.place = mesh.positions[v];
         }
+        found.spacings = std::max(found.spacings, 2.0 * coverage.spacings[v]);
     }
     return result;
 }

@@ -153,18 +153,29 @@ std::vector<Warning> cloud_warnings(const CloudReport& r)
         warnings.push_back({"uncertain_topology",
                             "the points do not decide the topology: " + joined(r.evidence.doubts),
                             invalid_index});
-    const auto filled =
-        static_cast<Index>(std::count_if(r.evidence.holes.begin(), r.evidence.holes.end(),
-                                         [](const CloudHole& hole) { return hole.filled; }));
+    const std::vector<CloudHole>& holes = r.evidence.holes; // the largest first
+    const auto is_filled = [](const CloudHole& hole) { return hole.filled; };
+    const auto filled = std::count_if(holes.begin(), holes.end(), is_filled);
+    const auto places = [](std::ptrdiff_t count) {
+        return fmt::format("{} place{} without points {}", count, count == 1 ? "" : "s",
+                           count == 1 ? "is" : "are");
+    };
     if (filled > 0) {
-        const auto& hole = *std::find_if(r.evidence.holes.begin(), r.evidence.holes.end(),
-                                         [](const CloudHole& h) { return h.filled; });
+        const CloudHole& hole = *std::find_if(holes.begin(), holes.end(), is_filled);
+        warnings.push_back({"holes_filled",
+                            fmt::format("{} closed; the largest, {:.4g} across, is at {}. "
+                                        "--fill-holes 0 leaves them open",
+                                        places(filled), hole.size, place_text(hole.place)),
+                            invalid_index});
+    }
+    const auto left = static_cast<std::ptrdiff_t>(holes.size()) - filled;
+    if (left > 0) {
+        const CloudHole& hole = *std::find_if_not(holes.begin(), holes.end(), is_filled);
         warnings.push_back(
-            {"holes_filled",
-             fmt::format("{} place{} without points {} closed; the largest, {:.4g} across, is at "
-                         "{}. --fill-holes 0 leaves them open",
-                         filled, filled == 1 ? "" : "s", filled == 1 ? "is" : "are", hole.size,
-                         place_text(hole.place)),
+            {"holes_left_open",
+             fmt::format("{} left open; the largest, {:.4g} across, is at {}. "
+                         "--fill-holes {:.3g} closes them",
+                         places(left), hole.size, place_text(hole.place), 1.01 * hole.size),
              invalid_index});
     }
     if (r.evidence.dropped_components > 0)
@@ -181,9 +192,9 @@ double expected_deviation(const CloudReport& report)
     return std::max(report.noise, detail_spacings * report.spacing);
 }
 
-Result<std::vector<ComponentPoints>> points_of_components(const CloudInput& cloud,
-                                                          const RepairedMesh& mesh, Index& off_mesh,
-                                                          Context& context)
+Result<std::vector<PointData>> points_of_components(const CloudInput& cloud,
+                                                    const RepairedMesh& mesh, Index& off_mesh,
+                                                    Context& context)
 {
     std::vector<Vec3> positions;
     std::vector<std::array<Index, 3>> triangles;
@@ -210,8 +221,8 @@ Result<std::vector<ComponentPoints>> points_of_components(const CloudInput& clou
                             }
                         }))
         return Context::cancelled_error("sampling");
-    std::vector<ComponentPoints> result(mesh.components.size());
-    for (ComponentPoints& points : result) {
+    std::vector<PointData> result(mesh.components.size());
+    for (PointData& points : result) {
         points.least_deviation = expected_deviation(cloud.report);
         points.noise = cloud.report.noise;
     }
@@ -221,7 +232,7 @@ Result<std::vector<ComponentPoints>> points_of_components(const CloudInput& clou
             ++off_mesh;
             continue;
         }
-        result[nearest[i]].points.push_back(cloud.points[i]);
+        result[nearest[i]].positions.push_back(cloud.points[i]);
         result[nearest[i]].weights.push_back(cloud.weights[i]);
     }
     return result;

@@ -3,6 +3,7 @@
 
 #include "bot2nurbs/cloud_report.h"
 #include "bot2nurbs/convert.h"
+#include "bot2nurbs/domain_samples.h"
 #include "bot2nurbs/repair_mesh.h"
 
 #include <optional>
@@ -30,23 +31,16 @@ std::optional<Error> refuse_cloud_solid(const CloudReport& report);
 //! What to warn of.
 std::vector<Warning> cloud_warnings(const CloudReport& report);
 
-//! The points that lie nearest to one component.
-struct ComponentPoints {
-    std::vector<Vec3> points;
-    std::vector<double> weights;
-    double least_deviation = 0.0; //!< See expected_deviation().
-    double noise = 0.0;           //!< Of all points.
-};
-
 //! Standard deviation of the points from a surface through them that is to be expected at least: of
 //! the noise, or where there is little a quarter of the spacing. A surface of few patches does not
 //! meet points more closely, and a point that is no nearer is an outlier, not a detail.
 double expected_deviation(const CloudReport& report);
 
-//! Shares the points out. Those that lie off the mesh, beside pieces of it that were left out, go
-//! to none: `off_mesh` says how many. Errors: cancelled.
-Result<std::vector<ComponentPoints>> points_of_components(const CloudInput& cloud,
-                                                          const RepairedMesh& mesh, Index& off_mesh,
-                                                          Context& context);
+//! Shares the points out: each goes to the component it lies nearest to. Those that lie off the
+//! mesh, beside pieces of it that were left out, go to none: `off_mesh` says how many. Errors:
+//! cancelled.
+Result<std::vector<PointData>> points_of_components(const CloudInput& cloud,
+                                                    const RepairedMesh& mesh, Index& off_mesh,
+                                                    Context& context);
 
 } // namespace bot2nurbs

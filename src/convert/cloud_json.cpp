@@ -43,6 +43,7 @@ Json holes_json(const std::vector<CloudHole>& holes)
         if (list.size() < most_holes)
             list.push_back({{"place", place_json(h.place)},
                             {"size", h.size},
+                            {"spacings", h.spacings},
                             {"area", h.area},
                             {"filled", h.filled}});
     return list;
@@ -103,7 +104,7 @@ Json cloud_options_json(const CloudOptions& o)
     j["normals"] = name_of(o.normals);
     j["viewpoint"] = o.orient.viewpoint ? place_json(*o.orient.viewpoint) : Json(nullptr);
     j["depth"] = o.reconstruct.depth ? Json(*o.reconstruct.depth) : Json(nullptr);
-    j["fill_holes"] = o.reconstruct.fill_holes;
+    j["fill_holes"] = o.reconstruct.fill_holes ? Json(*o.reconstruct.fill_holes) : Json(nullptr);
     return j;
 }
 

@@ -111,44 +111,43 @@ std::vector<FeaturePath> feature_paths(const MeshFeatures& features)
     return paths;
 }
 
-//! What the surface is fitted to: the points, and the mesh where there are none.
-Result<SurfaceSampleSet> point_samples(const ManifoldMesh& unit, const QuadComplex& complex,
-                                       const std::vector<QuadChart>& charts,
-                                       const ComponentPoints& points, const Frame& frame,
-                                       Index& anchors, Context& context)
+//! The points in the frame of the unit mesh, with their places on it.
+Result<PointData> unit_points(const PointData& points, const ManifoldMesh& unit, const Frame& frame,
+                              Context& context)
 {
-    std::vector<Vec3> positions = points.points;
-    for (Vec3& p : positions)
+    PointData result = points;
+    for (Vec3& p : result.positions)
         p = frame.to_unit(p);
-    std::vector<double> weights = points.weights;
-    for (double& w : weights)
+    for (double& w : result.weights)
         w /= frame.size * frame.size;
-    Result<SurfaceSampleSet> samples = project_samples(unit, charts, positions, weights, context);
-    if (!samples)
-        return samples;
-    const Result<Index> added = add_anchor_samples(unit, charts, *samples, context);
-    if (!added)
-        return added.error();
-    anchors = *added;
-    add_curve_samples(unit, complex, charts, {}, *samples);
-    return samples;
+    result.noise /= frame.size;
+    result.least_deviation /= frame.size;
+    Result<std::vector<SourcePoint>> places = closest_places(unit, result.positions, context);
+    if (!places)
+        return places.error();
+    result.source = std::move(*places);
+    return result;
 }
 
 //! Puts the points in the place of the mesh on the way to the surface.
-Status measure_points(const ComponentPoints& points, const QuadComplex& complex,
+Status measure_points(const PointData& points, const QuadComplex& complex,
                       ConvertedComponent& result, Context& context)
 {
-    Result<std::vector<double>> distances =
-        point_distances(points.points, complex, result.surface, context);
-    if (!distances)
-        return distances.error();
-    result.point_distances = std::move(*distances);
+    const Result<std::vector<PointFoot>> feet =
+        find_point_feet(points.positions, complex, result.surface, context);
+    if (!feet)
+        return feet.error();
+    for (const PointFoot& foot : *feet)
+        result.point_distances.push_back(foot.distance);
     const PointDeviation d = summarise_distances(result.point_distances);
     DistanceStatistics& side = result.outcome.deviation.source_to_surface;
     side.max = d.max;
     side.rms = d.rms;
     side.samples = d.points;
-    side.worst = d.points > 0 ? points.points[d.worst] : Vec3{};
+    side.worst = d.points > 0 ? points.positions[d.worst] : Vec3{};
+    if (result.outcome.tolerance && d.points > 0)
+        judge_points({points.positions[d.worst], d.max, (*feet)[d.worst].where, {}},
+                     result.outcome);
     return std::nullopt;
 }
 
@@ -265,8 +264,7 @@ void find_detour(const QuadDomain& domain, const std::vector<Index>& vertex_name
 } // namespace
 
 Result<ConvertedComponent> convert_component(const MeshComponent& component, DomainWishes wishes,
-                                             const ComponentPoints* points,
-                                             const ConvertOptions& options,
+                                             const PointData* points, const ConvertOptions& options,
                                              const std::vector<KnotForm>& forms,
                                              const std::string& stage_suffix, Context& context)
 {
@@ -300,6 +298,15 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
     if (wishes.tolerance)
         tolerance = tolerance_options(options, *wishes.tolerance / frame.size);
 
+    std::optional<PointData> data;
+    if (points != nullptr) {
+        Result<PointData> made = unit_points(*points, *unit, frame, context);
+        if (!made)
+            return made.error();
+        data = std::move(*made);
+    }
+    const PointData* const fit_to = data ? &*data : nullptr;
+
     stage("layout");
     if (wishes.supplied) {
         result.domain = std::move(*wishes.supplied);
@@ -318,7 +325,7 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
         layout_options.seed = options.seed;
         Result<LayoutResult> layout =
             tolerance && !options.patches
-                ? layout_for_tolerance(*unit, layout_options, *tolerance, context)
+                ? layout_for_tolerance(*unit, layout_options, *tolerance, fit_to, context)
                 : build_layout(*unit, layout_options, context);
         if (!layout)
             return layout.error();
@@ -341,7 +348,7 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
     if (tolerance) {
         stage("refine");
         Result<ToleranceFit> refined =
-            refine_to_tolerance(*unit, std::move(result.domain), *tolerance, context);
+            refine_to_tolerance(*unit, std::move(result.domain), *tolerance, fit_to, context);
         if (!refined)
             return refined.error();
         outcome.tolerance = describe(*refined, frame.size);
@@ -368,17 +375,17 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
     if (!fit) {
         stage("samples");
         Result<SurfaceSampleSet> samples =
-            points != nullptr ? point_samples(*unit, result.domain.complex, *charts, *points, frame,
-                                              result.anchors, context)
-                              : sample_domain(*unit, result.domain.complex, *charts, context);
+            data ? make_point_samples(*unit, result.domain.complex, *charts, *data, result.anchors,
+                                      context)
+                 : sample_domain(*unit, result.domain.complex, *charts, context);
         if (!samples)
             return samples.error();
         stage("fit");
         ConvertOptions fit_options = options;
-        if (points != nullptr) {
+        if (data) {
             fit_options.fit.robust = true;
-            fit_options.fit.least_deviation = points->least_deviation / frame.size;
-            fit_options.fit.noise = points->noise / frame.size;
+            fit_options.fit.least_deviation = data->least_deviation;
+            fit_options.fit.noise = data->noise;
         }
         Result<FitResult> fitted =
             fit_samples(result.domain.complex, *charts, *samples, fit_options, context);

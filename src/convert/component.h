@@ -37,11 +37,10 @@ struct DomainWishes {
 };
 
 //! Converts one component. No knot forms asked for: stops after the domain. `points`, unless null,
-//! are what the surface is fitted to in place of the mesh. `stage_suffix` is added to the names of
-//! the stages.
+//! are what the surface is fitted to in place of the mesh, in units of the input. `stage_suffix` is
+//! added to the names of the stages.
 Result<ConvertedComponent> convert_component(const MeshComponent& component, DomainWishes wishes,
-                                             const ComponentPoints* points,
-                                             const ConvertOptions& options,
+                                             const PointData* points, const ConvertOptions& options,
                                              const std::vector<KnotForm>& forms,
                                              const std::string& stage_suffix, Context& context);
 

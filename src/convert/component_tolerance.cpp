@@ -12,6 +12,15 @@ namespace {
 //! the input, and for ties of the bound.
 constexpr double aim = 1.0 - 1e-5;
 
+//! Whether a surface that is so near is near enough.
+void decide(ToleranceReport& report)
+{
+    report.met = report.distance.upper <= report.tolerance;
+    // Coordinates far from the origin are rounded when they are written, which no cut mends.
+    if (!report.met && report.termination == RefinementEnd::tolerance_met)
+        report.termination = RefinementEnd::stalled;
+}
+
 } // namespace
 
 ToleranceOptions tolerance_options(const ConvertOptions& options, double tolerance)
@@ -68,11 +77,19 @@ Status judge(const ManifoldMesh& source, const QuadComplex& complex, const Splin
             return decided.error();
         report.distance.upper = std::min(report.distance.upper, decided->upper());
     }
-    report.met = report.distance.upper <= report.tolerance;
-    // Coordinates far from the origin are rounded when they are written, which no cut mends.
-    if (!report.met && report.termination == RefinementEnd::tolerance_met)
-        report.termination = RefinementEnd::stalled;
+    decide(report);
     return {};
+}
+
+void judge_points(const FarPlace& worst, ComponentOutcome& outcome)
+{
+    ToleranceReport& report = *outcome.tolerance;
+    report.distance = {worst.distance, worst.distance};
+    report.worst = worst;
+    // Points may be near a surface that strays from them elsewhere.
+    if (report.termination == RefinementEnd::tolerance_met)
+        decide(report);
+    outcome.fit.termination = name(report.termination);
 }
 
 } // namespace bot2nurbs

@@ -20,4 +20,7 @@ void log_rounds(const ToleranceReport& report, const Context& context);
 Status judge(const ManifoldMesh& source, const QuadComplex& complex, const SplineSurface& surface,
              const HausdorffBound& bound, ToleranceReport& report, Context& context);
 
+//! The same for points: `worst` is the one that is farthest from the surface as it is written.
+void judge_points(const FarPlace& worst, ComponentOutcome& outcome);
+
 } // namespace bot2nurbs

@@ -142,10 +142,26 @@ const char* reason(RefinementEnd end)
     switch (end) {
     case RefinementEnd::tolerance_met: return "rounding of the coordinates is more";
     case RefinementEnd::patch_limit: return "it takes more patches than --max-patches allows";
+    case RefinementEnd::noise_limit: return "the points are no farther away than their noise";
     case RefinementEnd::stalled: return "more patches did not bring the surface nearer";
     case RefinementEnd::quality_limit: return "a patch could not be cut any further";
     }
     return "";
+}
+
+//! Warns of a tolerance that the noise of the points alone exceeds.
+void warn_of_noise(const CloudReport& cloud, double tolerance, ConvertReport& report)
+{
+    const double reach = noise_reach(cloud.noise, cloud.fitted);
+    if (tolerance >= reach)
+        return;
+    report.warnings.push_back(
+        {"tolerance_below_noise",
+         fmt::format("the tolerance of {:.4g} {} is less than the noise of the points, whose "
+                     "deviation of {:.4g} puts some of them up to {:.4g} away from the body: no "
+                     "patches are added to follow it",
+                     tolerance, report.units, cloud.noise, reach),
+         invalid_index});
 }
 
 //! A warning for each component that is not within the tolerance.
@@ -202,7 +218,7 @@ void add_outcome_warnings(const ConvertOptions& options, ConvertReport& report)
 
 //! Of all components together.
 void add_point_deviation(const std::vector<ConvertedComponent>& components, double diagonal,
-                         CloudReport& cloud)
+                         std::optional<double> tolerance, CloudReport& cloud)
 {
     std::vector<double> distances;
     for (const ConvertedComponent& c : components) {
@@ -210,9 +226,12 @@ void add_point_deviation(const std::vector<ConvertedComponent>& components, doub
         cloud.anchors += c.anchors;
     }
     cloud.deviation = summarise_distances(distances, expected_deviation(cloud));
-    for (const double relative : {1e-3, 3e-3, 1e-2})
+    std::vector<double> limits{1e-3 * diagonal, 3e-3 * diagonal, 1e-2 * diagonal};
+    if (tolerance)
+        limits.insert(std::upper_bound(limits.begin(), limits.end(), *tolerance), *tolerance);
+    for (const double limit : limits)
         cloud.within.push_back(
-            {relative * diagonal, relative, share_within(distances, relative * diagonal)});
+            {limit, diagonal > 0.0 ? limit / diagonal : 0.0, share_within(distances, limit)});
 }
 
 Result<std::string> to_bytes(Format format, const std::vector<Brep>& breps,
@@ -419,16 +438,16 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
     if (forms.empty() && options.tessellation)
         forms.push_back(form_of(Format::archive_3dm, options));
 
-    std::vector<ComponentPoints> points;
+    std::vector<PointData> points;
     if (input->cloud) {
-        if (options.tolerance)
-            return bad_option("--tolerance is about meshes: leave it out for an input of points");
-        Result<std::vector<ComponentPoints>> shared =
+        Result<std::vector<PointData>> shared =
             points_of_components(*input->cloud, mesh, report.cloud->off_mesh, context);
         if (!shared)
             return shared.error();
         report.cloud->fitted -= report.cloud->off_mesh;
         points = std::move(*shared);
+        if (options.tolerance)
+            warn_of_noise(*report.cloud, options.tolerance->of(report.diagonal), report);
     }
 
     std::vector<ConvertedComponent> components;
@@ -464,7 +483,11 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
         report.components.push_back(c.outcome);
     add_outcome_warnings(options, report);
     if (report.cloud)
-        add_point_deviation(components, report.diagonal, *report.cloud);
+        add_point_deviation(components, report.diagonal,
+                            options.tolerance
+                                ? std::optional(options.tolerance->of(report.diagonal))
+                                : std::nullopt,
+                            *report.cloud);
     add_tolerance_warnings(report);
     add_detour_warnings(report);
     if (context.cancelled())

@@ -79,31 +79,57 @@ private:
 
 } // namespace
 
-Result<SurfaceSampleSet> project_samples(const ManifoldMesh& source,
-                                         const std::vector<QuadChart>& charts,
-                                         const std::vector<Vec3>& points,
-                                         const std::vector<double>& weights, Context& context)
+Result<std::vector<SourcePoint>> closest_places(const ManifoldMesh& source,
+                                                const std::vector<Vec3>& points, Context& context)
 {
-    const FaceCharts faces(source, charts);
     const ClosestPoint closest(source, &context);
-    SurfaceSampleSet samples;
-    samples.positions = points;
-    samples.weights = weights;
-    samples.source.resize(points.size());
-    samples.domain.resize(points.size());
+    std::vector<SourcePoint> places(points.size());
     if (!for_each_chunk(context, points.size(), points_per_chunk,
                         [&](std::size_t begin, std::size_t end) {
-                            for (std::size_t i = begin; i < end; ++i) {
-                                samples.source[i] = closest.query(points[i]).where;
-                                samples.domain[i] = faces.locate(samples.source[i]);
-                            }
+                            for (std::size_t i = begin; i < end; ++i)
+                                places[i] = closest.query(points[i]).where;
                         }))
         return Context::cancelled_error("sampling");
-    for (Index i = 0; i < points.size(); ++i)
+    return places;
+}
+
+Result<SurfaceSampleSet> project_samples(const ManifoldMesh& source,
+                                         const std::vector<QuadChart>& charts,
+                                         const PointData& points, Context& context)
+{
+    const FaceCharts faces(source, charts);
+    SurfaceSampleSet samples;
+    samples.positions = points.positions;
+    samples.weights = points.weights;
+    samples.source = points.source;
+    samples.domain.resize(samples.size());
+    if (!for_each_chunk(context, samples.size(), points_per_chunk,
+                        [&](std::size_t begin, std::size_t end) {
+                            for (std::size_t i = begin; i < end; ++i)
+                                samples.domain[i] = faces.locate(samples.source[i]);
+                        }))
+        return Context::cancelled_error("sampling");
+    for (Index i = 0; i < samples.size(); ++i)
         if (samples.domain[i].quad == invalid_index)
             return Error{ErrorCode::invalid_domain,
                          "no chart covers face " + std::to_string(samples.source[i].face),
                          samples.source[i].face};
+    return samples;
+}
+
+Result<SurfaceSampleSet> make_point_samples(const ManifoldMesh& source, const QuadComplex& complex,
+                                            const std::vector<QuadChart>& charts,
+                                            const PointData& points, Index& anchors,
+                                            Context& context)
+{
+    Result<SurfaceSampleSet> samples = project_samples(source, charts, points, context);
+    if (!samples)
+        return samples;
+    const Result<Index> added = add_anchor_samples(source, charts, *samples, context);
+    if (!added)
+        return added.error();
+    anchors = *added;
+    add_curve_samples(source, complex, charts, {}, *samples);
     return samples;
 }
 

@@ -27,6 +27,9 @@ constexpr double mu_floor = 1e-5;
 constexpr int least_rounds = 5;
 //! Fairness falls by this a round.
 const double fairness_decay = std::sqrt(0.1);
+//! Samples of a quad are farther away than noise explains when they are by so many standard
+//! deviations: chance would say so of one quad in seven hundred.
+constexpr double sure_deviations = 3.0;
 //! With more fairness than this a surface is as smooth as it gets.
 constexpr double most_fairness = 1e2;
 //! In the first round quads that fold get so many times the fairness, up to so many times; those
@@ -157,13 +160,41 @@ void FitLoop::weigh_by_surface(const State& state)
             std::sqrt(std::max(speed[k], least_share * mean) * mean) / (places * 16.0 * area);
 }
 
-void FitLoop::scale_fairness(double share)
+std::vector<char> FitLoop::within_noise(const State& state) const
+{
+    if (options_.noise == 0.0)
+        return {};
+    std::vector<char> within(level_.size(), 0);
+    if (rms_distance(state) > options_.noise)
+        return within;
+    std::vector<double> sum(level_.size(), 0.0), count(level_.size(), 0.0);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const FootPoint& foot = state.feet[i];
+        sum[foot.where.quad] += foot.distance * foot.distance;
+        count[foot.where.quad] += 1.0;
+    }
+    for (std::size_t q = 0; q < within.size(); ++q)
+        if (count[q] == 0.0) {
+            within[q] = 1;
+        } else {
+            // Relative standard deviation of the deviation that so many normal errors show.
+            const double chance = 1.0 / std::sqrt(2.0 * count[q]);
+            within[q] =
+                std::sqrt(sum[q] / count[q]) <= (1.0 + sure_deviations * chance) * options_.noise;
+        }
+    return within;
+}
+
+void FitLoop::scale_fairness(double share, const std::vector<char>& held)
 {
     last_level_ = level_;
-    round_fairness_ = std::max(options_.fairness_floor, share * round_fairness_);
+    if (std::count(held.begin(), held.end(), 1) < static_cast<std::ptrdiff_t>(level_.size()))
+        round_fairness_ = std::max(options_.fairness_floor, share * round_fairness_);
     // What was raised at folds comes down to the others by the last round but one.
     const int left = options_.max_rounds - static_cast<int>(summary.rounds.size());
     for (std::size_t q = 0; q < level_.size(); ++q) {
+        if (!held.empty() && held[q] != 0)
+            continue;
         const double level = share * level_[q];
         const double down = std::pow(round_fairness_ / level, 1.0 / std::max(1, left - 1));
         level_[q] = std::max(floor_[q], std::min(1.0, down) * level);
@@ -337,7 +368,7 @@ Status FitLoop::raise_to_noise(State& state)
     if (const auto error = find_feet(state))
         return error;
     while (rms_distance(state) < options_.noise && round_fairness_ < most_fairness) {
-        scale_fairness(1.0 / fairness_decay);
+        scale_fairness(1.0 / fairness_decay, {});
         state = {};
         if (const auto error = first_round(state))
             return error;
@@ -372,7 +403,7 @@ Status FitLoop::raise_at_folds(State& state)
 
 Status FitLoop::next_round(State& state, double& mu, bool& stuck)
 {
-    scale_fairness(summary.rounds.back().rms > options_.noise ? fairness_decay : 1.0);
+    scale_fairness(fairness_decay, within_noise(state));
     const std::vector<double> factors = distance_factors(state, mu);
     for (int answers = 0;;) {
         NormalSystem::Solution solution = solve(state, rows_at(state, factors), mu);
@@ -487,8 +518,9 @@ Status FitLoop::run()
             return error;
         record(state, mu, start);
         const double after = summary.rounds.back().rms;
-        const bool fairness_done =
-            round_fairness_ <= options_.fairness_floor || after <= options_.noise;
+        const std::vector<char> held = within_noise(state);
+        const bool fairness_done = round_fairness_ <= options_.fairness_floor ||
+                                   (!held.empty() && std::count(held.begin(), held.end(), 0) == 0);
         const bool schedule_done = (!tangent || mu <= mu_floor) && fairness_done;
         // A stuck round leaves the surface as it is; with less fairness the next may do more.
         if (round + 1 >= least_rounds &&

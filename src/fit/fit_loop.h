@@ -68,8 +68,12 @@ private:
     //! the energy is measured. Weights by area alone leave the largest errors at extraordinary
     //! vertices, where parameters crowd.
     void weigh_by_surface(const State& state);
-    //! Fairness of all quads `share` times the last round's, but not below their floors.
-    void scale_fairness(double share);
+    //! Fairness of the quads `share` times the last round's, but not below their floors; that of
+    //! those that are `held` stays. Empty: none is.
+    void scale_fairness(double share, const std::vector<char>& held);
+    //! Per quad: whether all samples together are no farther away than their noise, and those of
+    //! the quad not surely. Empty without noise.
+    std::vector<char> within_noise(const State& state) const;
     //! Repeats the first round with more fairness while the surface follows the noise.
     Status raise_to_noise(State& state);
     //! Repeats the first round with more fairness in quads that fold: what folds in it, later

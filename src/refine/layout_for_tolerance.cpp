@@ -40,10 +40,12 @@ double distance_of_share(const Trial& trial, double share)
 } // namespace
 
 Result<LayoutResult> layout_for_tolerance(const ManifoldMesh& source, LayoutOptions layout,
-                                          const ToleranceOptions& options, Context& context)
+                                          const ToleranceOptions& options, const PointData* points,
+                                          Context& context)
 {
     if (const auto error = options.check())
         return *error;
+    const FitTarget target(source, points, options.tolerance);
     std::optional<LayoutResult> best;
     double best_ratio = std::numeric_limits<double>::infinity();
     for (double patches = first_patches;;) {
@@ -53,10 +55,10 @@ Result<LayoutResult> layout_for_tolerance(const ManifoldMesh& source, LayoutOpti
             return made;
         if (best && made->domain.complex.quad_count() > options.max_patches)
             return std::move(*best);
-        const Result<Trial> trial = make_trial(source, made->domain, options, context);
+        const Result<Trial> trial = make_trial(target, made->domain, options, context);
         if (!trial)
             return trial.error();
-        const double ratio = distance_of_share(*trial, wanted_share) / options.tolerance;
+        const double ratio = distance_of_share(*trial, wanted_share) / target.limit;
         if (ratio <= 1.0)
             return made;
         // More patches gain nothing: most of them have details, or facets, of the source to reach.

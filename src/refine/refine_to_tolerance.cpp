@@ -36,7 +36,8 @@ RefinementRound describe(const Trial& trial, double seconds)
     round.patches = trial.domain.complex.quad_count();
     round.unknowns = trial.fit.summary.unknowns;
     round.rms = trial.fit.summary.rounds.back().rms;
-    round.distance = {std::max(trial.distance(), trial.bound.lower()), trial.bound.upper()};
+    round.distance.lower = std::max(trial.distance(), trial.bound.lower());
+    round.distance.upper = std::max(round.distance.lower, trial.bound.upper());
     round.exceeding = trial.exceeding();
     round.beyond = trial.beyond();
     round.seconds = seconds;
@@ -98,6 +99,7 @@ const char* name(RefinementEnd end)
     switch (end) {
     case RefinementEnd::tolerance_met: return "tolerance_met";
     case RefinementEnd::patch_limit: return "patch_limit";
+    case RefinementEnd::noise_limit: return "noise_limit";
     case RefinementEnd::stalled: return "stalled";
     case RefinementEnd::quality_limit: return "quality_limit";
     }
@@ -119,10 +121,12 @@ std::optional<Error> ToleranceOptions::check() const
 }
 
 Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain start,
-                                         const ToleranceOptions& options, Context& context)
+                                         const ToleranceOptions& options, const PointData* points,
+                                         Context& context)
 {
     if (const auto error = options.check())
         return *error;
+    const FitTarget target(source, points, options.tolerance);
     ToleranceOptions current = options;
     ToleranceFit result;
     Trial best;
@@ -130,7 +134,7 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
     std::size_t first = 0; // Round with the rows of now.
     for (std::optional<RefinementEnd> end; !end;) {
         const double begin = now();
-        Result<Trial> made = make_trial(source, std::move(domain), current, context);
+        Result<Trial> made = make_trial(target, std::move(domain), current, context);
         if (!made && made.error().code == ErrorCode::layout_failed && !result.rounds.empty()) {
             result.termination = RefinementEnd::quality_limit;
             break;
@@ -138,7 +142,7 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
         if (!made)
             return made.error();
         Trial& trial = *made;
-        if (Status failed = prove_trial(source, options.tolerance, trial, context))
+        if (Status failed = prove_trial(target, trial, context))
             return *failed;
         result.rounds.push_back(describe(trial, now() - begin));
         const bool is_best = better(result.rounds, result.best);
@@ -147,8 +151,10 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
 
         const bool tangent = current.fit.rows == DistanceRows::tangent;
         const bool stuck = stalled(result.rounds, first, tangent ? tangent_patience : patience);
-        if (trial.bound.upper() <= options.tolerance) {
+        if (trial.within) {
             end = RefinementEnd::tolerance_met;
+        } else if (points != nullptr && trial.beyond() == 0) {
+            end = RefinementEnd::noise_limit;
         } else if (stuck && tangent) {
             current.fit.rows = DistanceRows::point;
             first = result.rounds.size();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "refine/trial.h"
 
+#include "refine/point_trial.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -52,6 +54,36 @@ void measure_samples(const SurfaceSampleSet& samples, const std::vector<std::siz
         patches[q].change = mean_changes(residual.data() + first[q], side);
 }
 
+struct FitSamples {
+    SurfaceSampleSet all;
+    std::vector<std::size_t> first; // Per quad, without points: see measure_samples().
+};
+
+Result<FitSamples> samples_of(const FitTarget& target, const QuadComplex& complex,
+                              const std::vector<QuadChart>& charts, const ToleranceOptions& options,
+                              Context& context)
+{
+    FitSamples result;
+    if (target.points != nullptr) {
+        Index anchors = 0;
+        Result<SurfaceSampleSet> made =
+            make_point_samples(target.source, complex, charts, *target.points, anchors, context);
+        if (!made)
+            return made.error();
+        result.all = std::move(*made);
+        return result;
+    }
+    Result<SurfaceSampleSet> made = make_samples(target.source, charts, options.samples, context);
+    if (!made)
+        return made.error();
+    result.all = std::move(*made);
+    result.first.assign(complex.quad_count(), result.all.size());
+    for (std::size_t i = result.all.size(); i-- > 0;)
+        result.first[result.all.domain[i].quad] = i;
+    add_curve_samples(target.source, complex, charts, options.samples, result.all);
+    return result;
+}
+
 } // namespace
 
 Index Trial::exceeding() const
@@ -74,9 +106,19 @@ double Trial::distance() const
     return largest;
 }
 
-Result<Trial> make_trial(const ManifoldMesh& source, QuadDomain domain,
+FitTarget::FitTarget(const ManifoldMesh& mesh, const PointData* data, double wanted)
+    : source(mesh), points(data), tolerance(wanted), limit(wanted), surface_limit(wanted)
+{
+    if (points == nullptr)
+        return;
+    limit = std::max(tolerance, noise_reach(points->noise, points->positions.size()));
+    surface_limit = limit + distance_of_mesh(source, *points);
+}
+
+Result<Trial> make_trial(const FitTarget& target, QuadDomain domain,
                          const ToleranceOptions& options, Context& context)
 {
+    const ManifoldMesh& source = target.source;
     Trial trial;
     trial.domain = std::move(domain);
     const QuadComplex& complex = trial.domain.complex;
@@ -84,34 +126,46 @@ Result<Trial> make_trial(const ManifoldMesh& source, QuadDomain domain,
     if (!charts)
         return charts.error();
     trial.charts = std::move(*charts);
-    Result<SurfaceSampleSet> samples = make_samples(source, trial.charts, options.samples, context);
+    Result<FitSamples> samples = samples_of(target, complex, trial.charts, options, context);
     if (!samples)
         return samples.error();
-    std::vector<std::size_t> first(complex.quad_count(), samples->size());
-    for (std::size_t i = samples->size(); i-- > 0;)
-        first[samples->domain[i].quad] = i;
-    add_curve_samples(source, complex, trial.charts, options.samples, *samples);
 
     const Result<SplineNetwork> network =
         build_spline_network(complex, options.spline, corner_angles(trial.charts));
     if (!network)
         return network.error();
     FitOptions how = options.fit;
-    how.emphasis = emphasis_share * options.tolerance;
-    Result<FitResult> fit = fit_network(*network, *samples, how, context);
+    if (target.points == nullptr) {
+        how.emphasis = emphasis_share * options.tolerance;
+    } else {
+        // Points that are far away are outliers, or noise: they must not count more.
+        how.robust = true;
+        how.noise = target.points->noise;
+        how.least_deviation = std::max(target.points->least_deviation, options.tolerance);
+    }
+    Result<FitResult> fit = fit_network(*network, samples->all, how, context);
     if (!fit)
         return fit.error();
     trial.fit = std::move(*fit);
 
     trial.patches.resize(complex.quad_count());
-    measure_samples(*samples, first, trial.fit.surface, options.samples.per_side, trial.patches);
+    if (target.points != nullptr)
+        measure_points(samples->all, target.points->positions.size(), trial.fit.surface,
+                       trial.patches);
+    else
+        measure_samples(samples->all, samples->first, trial.fit.surface, options.samples.per_side,
+                        trial.patches);
     for (PatchError& patch : trial.patches)
-        patch.exceeds = patch.beyond = patch.distance > options.tolerance;
+        patch.exceeds = patch.beyond = patch.distance > target.limit;
     return trial;
 }
 
-Status prove_trial(const ManifoldMesh& source, double tolerance, Trial& trial, Context& context)
+Status prove_trial(const FitTarget& target, Trial& trial, Context& context)
 {
+    if (target.points != nullptr)
+        return prove_points(target, trial, context);
+    const ManifoldMesh& source = target.source;
+    const double tolerance = target.tolerance;
     const QuadComplex& complex = trial.domain.complex;
     const auto exceeds = [](const PatchError& patch) { return patch.exceeds; };
     HausdorffOptions decide;
@@ -124,6 +178,7 @@ Status prove_trial(const ManifoldMesh& source, double tolerance, Trial& trial, C
         if (!bound)
             return bound.error();
         trial.bound = std::move(*bound);
+        trial.within = trial.bound.upper() <= tolerance;
         for (Index q = 0; q < complex.quad_count(); ++q) {
             const PatchDistance& known = trial.bound.patches[q];
             // Feet of samples are found by a local search, and may be farther than the distance.

@@ -22,8 +22,9 @@ struct Trial {
     QuadDomain domain;
     std::vector<QuadChart> charts;
     FitResult fit;
-    HausdorffBound bound;
+    HausdorffBound bound; //!< With points: of these alone.
     std::vector<PatchError> patches;
+    bool within = false; //!< Proven to be within the tolerance.
 
     Index exceeding() const;
     Index beyond() const;
@@ -31,15 +32,29 @@ struct Trial {
     double distance() const;
 };
 
-//! Fits a surface to a domain and measures its distance from the source at the samples alone:
-//! patches beyond it are those that exceed the tolerance there. Errors: those of compute_charts(),
-//! make_samples(), build_spline_network(), fit_network().
-Result<Trial> make_trial(const ManifoldMesh& source, QuadDomain domain,
+//! What is to be approximated, and how nearly.
+struct FitTarget {
+    FitTarget(const ManifoldMesh& mesh, const PointData* data, double wanted);
+
+    const ManifoldMesh& source;
+    const PointData* points; //!< Null: the source itself.
+    double tolerance;
+    //! Patches of which a place of the source, or a point, is farther than this are cut.
+    double limit;
+    //! Patches that are anywhere farther than this from the source are cut: with points the limit
+    //! and what they are away from the mesh through them.
+    double surface_limit;
+};
+
+//! Fits a surface to a domain and measures its distance from the target at the samples alone:
+//! patches beyond it are those that exceed the limit there. Errors: those of compute_charts(),
+//! make_samples(), make_point_samples(), build_spline_network(), fit_network().
+Result<Trial> make_trial(const FitTarget& target, QuadDomain domain,
                          const ToleranceOptions& options, Context& context);
 
 //! Decides which patches of a trial are within the tolerance. Where that would take long, because
 //! the surface is far from the source, some stay undecided: only while others exceed it. Errors:
-//! those of bound_hausdorff().
-Status prove_trial(const ManifoldMesh& source, double tolerance, Trial& trial, Context& context);
+//! those of bound_hausdorff() and find_point_feet().
+Status prove_trial(const FitTarget& target, Trial& trial, Context& context);
 
 } // namespace bot2nurbs

@@ -20,14 +20,14 @@ TEST(PointDeviation, of_points_above_and_beside_a_square_is_known)
     }
     const Vec3 middle = 0.5 * (low + high);
     Context context;
-    const auto d = point_distances({middle, middle + Vec3{0.0, 0.0, 0.5},
+    const auto d = find_point_feet({middle, middle + Vec3{0.0, 0.0, 0.5},
                                     middle + Vec3{0.1, -0.1, -0.25}, high + Vec3{3.0, 4.0, 0.0}},
                                    disk.complex, surface, context);
     ASSERT_TRUE(d.ok());
-    EXPECT_NEAR((*d)[0], 0.0, 1e-14);
-    EXPECT_NEAR((*d)[1], 0.5, 1e-14);
-    EXPECT_NEAR((*d)[2], 0.25, 1e-14);
-    EXPECT_NEAR((*d)[3], 5.0, 1e-9);
+    EXPECT_NEAR((*d)[0].distance, 0.0, 1e-14);
+    EXPECT_NEAR((*d)[1].distance, 0.5, 1e-14);
+    EXPECT_NEAR((*d)[2].distance, 0.25, 1e-14);
+    EXPECT_NEAR((*d)[3].distance, 5.0, 1e-9);
 }
 
 TEST(PointDeviation, statistics_are_those_of_the_distances)
@@ -62,10 +62,10 @@ TEST(PointDeviation, stops_when_cancelled_and_refuses_an_empty_surface)
 {
     const fixtures::Domain disk = fixtures::disk_grid(1, 1);
     Context context;
-    EXPECT_EQ(point_distances({}, disk.complex, SplineSurface(), context).error().code,
+    EXPECT_EQ(find_point_feet({}, disk.complex, SplineSurface(), context).error().code,
               ErrorCode::empty_input);
     context.cancel();
-    EXPECT_EQ(point_distances({{0, 0, 0}}, disk.complex, fixtures::flat_patches(disk), context)
+    EXPECT_EQ(find_point_feet({{0, 0, 0}}, disk.complex, fixtures::flat_patches(disk), context)
                   .error()
                   .code,
               ErrorCode::cancelled);

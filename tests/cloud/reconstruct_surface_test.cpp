@@ -123,10 +123,28 @@ TEST(ReconstructSurface, a_hole_within_the_size_allowed_is_filled_and_said_so)
     EXPECT_NEAR(filled.result.evidence.holes[0].size, 0.5, 0.1);
     EXPECT_GT(filled.result.evidence.holes[0].place.z, 0.9);
     EXPECT_TRUE(filled.mesh.closed());
+    const Case open = reconstructed(pierced);
+    EXPECT_EQ(open.result.topology, CloudTopology::open);
+    EXPECT_FALSE(open.mesh.closed());
+    EXPECT_NEAR(open.result.evidence.holes[0].spacings,
+                0.5 / std::sqrt(4.0 * fixtures::pi / 8000.0), 4.0);
+}
+
+TEST(ReconstructSurface, a_gap_that_chance_may_leave_is_filled_unless_none_may_be)
+{
+    SampledSurface s = fixtures::sphere_points(8000);
+    const double spacing = std::sqrt(4.0 * fixtures::pi / 8000.0);
+    std::vector<Vec3> pierced;
+    for (const Vec3& p : s.points)
+        if (norm(p - Vec3{0.0, 0.0, 1.0}) > 2.55 * spacing)
+            pierced.push_back(p);
+    const Case filled = reconstructed(pierced);
+    EXPECT_EQ(filled.result.topology, CloudTopology::holes_filled);
+    EXPECT_TRUE(filled.mesh.closed());
+    ReconstructOptions options;
     options.fill_holes = 0.0;
     const Case open = reconstructed(pierced, options);
     EXPECT_EQ(open.result.topology, CloudTopology::open);
-    EXPECT_FALSE(open.mesh.closed());
 }
 
 TEST(ReconstructSurface, a_flat_sheet_of_points_is_open)

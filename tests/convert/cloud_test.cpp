@@ -101,6 +101,45 @@ TEST_F(ConvertCloud, noise_is_reported_and_not_followed)
     EXPECT_NEAR(report.cloud->deviation.rms, noise, 0.25 * noise);
 }
 
+TEST_F(ConvertCloud, a_tolerance_is_met_by_the_points)
+{
+    ConvertOptions options = options_for_points(fixtures::torus_points(5000).points);
+    options.patches.reset();
+    options.tolerance = Length{1e-3, true};
+    const ConvertReport report = converted(options);
+    EXPECT_TRUE(report.tolerance_met());
+    EXPECT_TRUE(report.solid());
+    EXPECT_EQ(report.components[0].fit.termination, "tolerance_met");
+    EXPECT_LE(report.cloud->deviation.max, 1e-3 * report.diagonal);
+    EXPECT_EQ(report.cloud->within[0].share, 1.0);
+}
+
+TEST_F(ConvertCloud, a_tolerance_below_the_noise_is_warned_of_and_not_met_with_waves)
+{
+    ConvertOptions options =
+        options_for_points(fixtures::with_noise(fixtures::torus_points(8000).points, 0.02));
+    options.patches.reset();
+    options.tolerance = Length{1e-3, true};
+    const ConvertReport report = converted(options);
+    EXPECT_FALSE(report.tolerance_met());
+    EXPECT_TRUE(report.solid());
+    EXPECT_EQ(report.components[0].fit.termination, "noise_limit");
+    EXPECT_LT(report.components[0].domain.faces, 200u);
+    EXPECT_NEAR(report.cloud->deviation.rms, 0.02, 0.25 * 0.02);
+    const auto warned = [&](const char* code) {
+        return std::any_of(report.warnings.begin(), report.warnings.end(),
+                           [&](const Warning& w) { return w.code == code; });
+    };
+    EXPECT_TRUE(warned("tolerance_below_noise"));
+    EXPECT_TRUE(warned("tolerance_not_met"));
+    // The share within the tolerance is among those listed.
+    const auto& within = report.cloud->within;
+    ASSERT_EQ(within.size(), 4u);
+    EXPECT_TRUE(std::any_of(within.begin(), within.end(), [&](const ShareWithin& w) {
+        return w.distance == 1e-3 * report.diagonal && w.share < 0.5;
+    }));
+}
+
 TEST_F(ConvertCloud, copies_and_points_that_are_not_finite_are_counted_and_do_no_harm)
 {
     auto points = fixtures::sphere_points(2000).points;

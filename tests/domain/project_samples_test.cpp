@@ -8,13 +8,23 @@
 namespace bot2nurbs::test {
 namespace {
 
+PointData data_of(const HandDomain& hand, const std::vector<Vec3>& points, Context& context)
+{
+    PointData data;
+    data.positions = points;
+    data.weights.assign(points.size(), 1.0);
+    const auto places = closest_places(hand.mesh, points, context);
+    EXPECT_TRUE(places.ok());
+    data.source = *places;
+    return data;
+}
+
 SurfaceSampleSet projected(const HandDomain& hand, const std::vector<Vec3>& points,
                            unsigned threads = 0)
 {
     Context context;
     context.threads = threads;
-    auto set = project_samples(hand.mesh, hand.charts, points,
-                               std::vector<double>(points.size(), 1.0), context);
+    auto set = project_samples(hand.mesh, hand.charts, data_of(hand, points, context), context);
     EXPECT_TRUE(set.ok()) << set.error().message;
     return set.ok() ? *set : SurfaceSampleSet{};
 }
@@ -65,11 +75,14 @@ TEST(ProjectSamples, are_the_same_for_any_thread_count_and_stop_when_cancelled)
         EXPECT_EQ(one.domain[i].u, three.domain[i].u);
     }
     Context context;
+    const PointData data = data_of(hand, hand.mesh.positions(), context);
     context.cancel();
-    const auto set = project_samples(hand.mesh, hand.charts, hand.mesh.positions(),
-                                     std::vector<double>(hand.mesh.vertex_count(), 1.0), context);
+    const auto set = project_samples(hand.mesh, hand.charts, data, context);
     ASSERT_FALSE(set.ok());
     EXPECT_EQ(set.error().code, ErrorCode::cancelled);
+    const auto places = closest_places(hand.mesh, data.positions, context);
+    ASSERT_FALSE(places.ok());
+    EXPECT_EQ(places.error().code, ErrorCode::cancelled);
 }
 
 TEST(AnchorSamples, are_added_where_a_piece_has_no_sample_and_nowhere_else)

@@ -268,6 +268,35 @@ TEST(FitNetwork, a_fit_that_knows_the_noise_does_not_follow_it)
     EXPECT_NEAR(fair.result.summary.rounds.back().rms, noise, 0.25 * noise);
 }
 
+TEST(FitNetwork, noise_elsewhere_does_not_keep_the_surface_from_detail_that_is_no_noise)
+{
+    const Target target = sphere_target(2);
+    SurfaceSampleSet samples = sample_target(target, 4);
+    constexpr double noise = 0.01;
+    std::mt19937 generator(5);
+    std::normal_distribution<double> step(0.0, noise);
+    const auto bump = [](const Vec3& p) {
+        const double off = std::acos(std::clamp(p.z / norm(p), -1.0, 1.0)) / 0.15;
+        return 0.15 * std::exp(-off * off);
+    };
+    for (Vec3& p : samples.positions)
+        p *= 1.0 + bump(p) + step(generator);
+    FitOptions options;
+    options.noise = noise;
+    const Fit f = fit(target.domain, samples, options);
+    double sum = 0.0;
+    Index count = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const Vec3& p = samples.positions[i];
+        if (std::acos(std::clamp(p.z / norm(p), -1.0, 1.0)) > 0.3)
+            continue;
+        const double miss = norm(f.result.surface.position(f.samples.domain[i]) - p);
+        sum += miss * miss;
+        ++count;
+    }
+    EXPECT_LT(std::sqrt(sum / count), 1.3 * noise);
+}
+
 TEST(FitNetwork, noise_below_what_the_surface_can_meet_changes_nothing)
 {
     const Target target = sphere_target(0);

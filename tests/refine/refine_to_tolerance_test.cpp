@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bot2nurbs/refine_to_tolerance.h"
 
+#include "bot2nurbs/point_deviation.h"
 #include "bot2nurbs/validate_domain.h"
 #include "domain/domain_paths.h"
 #include "hand_domains.h"
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <random>
 
 namespace bot2nurbs {
 namespace {
@@ -38,7 +40,7 @@ Result<ToleranceFit> refined(const HandDomain& hand, const ToleranceOptions& opt
 {
     Context context;
     context.threads = threads;
-    return refine_to_tolerance(hand.mesh, hand.domain, options, context);
+    return refine_to_tolerance(hand.mesh, hand.domain, options, nullptr, context);
 }
 
 TEST(RefineToTolerance, a_torus_of_twelve_patches_is_refined_until_the_bound_proves_the_tolerance)
@@ -155,13 +157,121 @@ TEST(RefineToTolerance, tolerances_that_are_no_positive_numbers_are_refused)
     }
 }
 
+TEST(NoiseReach, is_farther_than_the_largest_of_so_many_normal_errors_but_not_by_much)
+{
+    EXPECT_EQ(noise_reach(1.0, 0), 0.0);
+    EXPECT_EQ(noise_reach(0.0, 1000), 0.0);
+    std::mt19937 generator(3);
+    std::normal_distribution<double> error(0.0, 2.0);
+    for (const std::size_t count : {30u, 1000u, 100000u}) {
+        double mean = 0.0;
+        for (int trial = 0; trial < 20; ++trial) {
+            double largest = 0.0;
+            for (std::size_t i = 0; i < count; ++i)
+                largest = std::max(largest, std::abs(error(generator)));
+            mean += largest / 20.0;
+        }
+        EXPECT_GT(noise_reach(2.0, count), mean);
+        EXPECT_LT(noise_reach(2.0, count), mean + 2.0 * 1.25);
+    }
+}
+
+//! Points scattered over the torus of torus(), moved across it by normal errors.
+PointData points_of_torus(const HandDomain& hand, std::size_t count, double noise)
+{
+    std::mt19937 generator(11);
+    std::uniform_real_distribution<double> angle(0.0, 2.0 * 3.14159265358979323846);
+    std::normal_distribution<double> error(0.0, noise);
+    PointData data;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double u = angle(generator), v = angle(generator);
+        const double r = 0.4 + (noise > 0.0 ? error(generator) : 0.0);
+        const double ring = 1.0 + r * std::cos(v);
+        data.positions.push_back({ring * std::cos(u), ring * std::sin(u), r * std::sin(v)});
+        data.weights.push_back(1.0 / double(count));
+    }
+    Context context;
+    data.source = *closest_places(hand.mesh, data.positions, context);
+    data.noise = noise;
+    data.least_deviation = noise;
+    return data;
+}
+
+TEST(RefineToTolerance, points_are_met_by_a_surface_that_is_nearer_to_them_than_their_mesh_is)
+{
+    const HandDomain hand = torus(); // its triangles are up to 8e-4 away
+    const PointData data = points_of_torus(hand, 6000, 0.0);
+    const ToleranceOptions options = options_for(3e-4);
+    Context context;
+    const Result<ToleranceFit> fit =
+        refine_to_tolerance(hand.mesh, hand.domain, options, &data, context);
+    ASSERT_TRUE(fit) << fit.error().message;
+    EXPECT_EQ(fit->termination, RefinementEnd::tolerance_met);
+    EXPECT_GT(fit->rounds.size(), 1u);
+    EXPECT_GT(fit->rounds[0].distance.lower, options.tolerance);
+    const auto feet =
+        find_point_feet(data.positions, fit->domain.complex, fit->fit.surface, context);
+    ASSERT_TRUE(feet);
+    for (const PointFoot& foot : *feet)
+        EXPECT_LE(foot.distance, options.tolerance);
+}
+
+TEST(RefineToTolerance, noise_of_points_is_not_followed)
+{
+    const HandDomain hand = torus();
+    constexpr double noise = 0.01;
+    const PointData data = points_of_torus(hand, 6000, noise);
+    Context context;
+    const Result<ToleranceFit> fit =
+        refine_to_tolerance(hand.mesh, hand.domain, options_for(noise), &data, context);
+    ASSERT_TRUE(fit) << fit.error().message;
+    EXPECT_EQ(fit->termination, RefinementEnd::noise_limit);
+    EXPECT_LT(fit->domain.complex.quad_count(), 60u);
+    EXPECT_NEAR(fit->rounds.back().rms, noise, 0.15 * noise);
+    // Nearer to the torus than the points are.
+    double sum = 0.0;
+    Index places = 0;
+    for (Index q = 0; q < fit->domain.complex.quad_count(); ++q)
+        for (const double u : {0.2, 0.5, 0.8})
+            for (const double v : {0.3, 0.6, 0.9}) {
+                const Vec3 p = fit->fit.surface.position({q, u, v});
+                const double off = std::hypot(std::hypot(p.x, p.y) - 1.0, p.z) - 0.4;
+                sum += off * off;
+                ++places;
+            }
+    EXPECT_LT(std::sqrt(sum / places), 0.35 * noise);
+}
+
+TEST(RefineToTolerance, a_surface_that_strays_from_the_mesh_between_points_is_not_within)
+{
+    // All points lie on the outer half: what the inner half does only the mesh says.
+    const HandDomain hand = torus();
+    PointData all = points_of_torus(hand, 9000, 0.0), data;
+    for (std::size_t i = 0; i < all.positions.size(); ++i)
+        if (std::hypot(all.positions[i].x, all.positions[i].y) > 1.0) {
+            data.positions.push_back(all.positions[i]);
+            data.weights.push_back(all.weights[i]);
+            data.source.push_back(all.source[i]);
+        }
+    Context context;
+    const ToleranceOptions options = options_for(2e-3);
+    const Result<ToleranceFit> fit =
+        refine_to_tolerance(hand.mesh, hand.domain, options, &data, context);
+    ASSERT_TRUE(fit) << fit.error().message;
+    EXPECT_EQ(fit->termination, RefinementEnd::tolerance_met);
+    const auto bound =
+        bound_hausdorff(hand.mesh, fit->domain.complex, fit->fit.surface, {}, context);
+    ASSERT_TRUE(bound);
+    EXPECT_LE(bound->surface_to_source.lower, options.tolerance + 1e-3);
+}
+
 TEST(RefineToTolerance, it_can_be_cancelled)
 {
     const HandDomain hand = torus();
     Context context;
     context.cancel();
     const Result<ToleranceFit> fit =
-        refine_to_tolerance(hand.mesh, hand.domain, options_for(1e-2), context);
+        refine_to_tolerance(hand.mesh, hand.domain, options_for(1e-2), nullptr, context);
     ASSERT_FALSE(fit);
     EXPECT_EQ(fit.error().code, ErrorCode::cancelled);
 }
@@ -178,7 +288,8 @@ TEST(LayoutForTolerance, a_smaller_tolerance_starts_from_more_patches_up_to_the_
         ToleranceOptions options = options_for(tolerance);
         options.max_patches = limit;
         Context context;
-        const Result<LayoutResult> layout = layout_for_tolerance(bumpy, {}, options, context);
+        const Result<LayoutResult> layout =
+            layout_for_tolerance(bumpy, {}, options, nullptr, context);
         EXPECT_TRUE(layout);
         return layout ? layout->domain.complex.quad_count() : 0;
     };
