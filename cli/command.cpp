@@ -39,6 +39,9 @@ Exit codes:
   3 cannot read             7 written, but the tolerance is not met
                           130 interrupted)";
 
+const std::map<std::string, ReconstructionMethod> reconstruction_methods{
+    {"poisson", ReconstructionMethod::poisson},
+    {"ball-pivoting", ReconstructionMethod::ball_pivoting}};
 const std::map<std::string, NormalMode> normal_modes{{"auto", NormalMode::automatic},
                                                      {"given", NormalMode::given},
                                                      {"estimate", NormalMode::estimate}};
@@ -228,6 +231,12 @@ std::variant<Command, int> parse_command(int argc, char** argv)
 
     const std::string cloud = "Input of points";
     app.add_flag("--points", o.cloud.points, "Take the points of a mesh and pass over its faces")
+        ->group(cloud);
+    add_choice(
+        app, "--reconstruction", o.cloud.reconstruct.method, reconstruction_methods,
+        "Mesh through the points: poisson closes gaps and smooths noise, ball-pivoting keeps "
+        "to where the points are (default: poisson)")
+        ->type_name("poisson|ball-pivoting")
         ->group(cloud);
     add_choice(app, "--normals", o.cloud.normals, normal_modes,
                "Whose normals: those of the file if they agree, of the file, or none of the file "

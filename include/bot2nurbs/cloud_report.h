@@ -24,6 +24,15 @@ struct ShareWithin {
     double share = 0.0;
 };
 
+//! How far places of the surface are from the nearest point. Where there are points, that is about
+//! half of their spacing; no point is expected beyond `reach`, and places that are farther away are
+//! not covered: nothing is known of the surface there.
+struct SurfaceToPoints {
+    Index samples = 0, covered = 0;
+    double reach = 0.0;
+    double max = 0.0, rms = 0.0; //!< Of the covered ones.
+};
+
 //! What was found of a cloud and of the surface through it. Lengths in units of the points.
 struct CloudReport {
     Index points = 0;     //!< In the file.
@@ -44,6 +53,7 @@ struct CloudReport {
 
     PointDeviation deviation;        //!< Of the fitted points from the surface.
     std::vector<ShareWithin> within; //!< For some distances, ascending.
+    SurfaceToPoints surface_to_points;
 };
 
 } // namespace bot2nurbs

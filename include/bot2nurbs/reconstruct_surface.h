@@ -10,9 +10,19 @@
 
 namespace bot2nurbs {
 
+//! How a mesh is made through points.
+enum class ReconstructionMethod {
+    poisson,       //!< Screened Poisson \cite kazhdan_2013: closes what it can, smooths noise.
+    ball_pivoting, //!< Ball pivoting \cite bernardini_1999: triangles between the points
+                   //!< themselves.
+};
+//! "poisson" or "ball_pivoting".
+const char* name(ReconstructionMethod method);
+
 struct ReconstructOptions {
-    //! Finest level of the octree, 2^depth cells an axis; by default as fine as density and noise
-    //! allow, within `most_vertices`. In 3 .. 12.
+    ReconstructionMethod method = ReconstructionMethod::poisson;
+    //! Of Poisson: finest level of the octree, 2^depth cells an axis; by default as fine as density
+    //! and noise allow, within `most_vertices`. In 3 .. 12.
     std::optional<int> depth;
     //! Wanted size of the mesh where there are more points than that: it gives topology and a
     //! start, not the shape.
@@ -46,13 +56,14 @@ struct CloudHole {
 
 //! What speaks for and against the topology.
 struct SurfaceEvidence {
-    int depth = 0;                   //!< Of the octree.
-    double uncovered_area = 0.0;     //!< Share of the closed surface without points near it.
-    std::vector<CloudHole> holes;    //!< Largest first.
-    int genus = 0;                   //!< Sum over the components, boundary loops counted as closed.
-    int finer_genus = 0;             //!< The same when reconstructed with cells of half the size.
-    Index components = 0;            //!< That were kept.
-    Index dropped_components = 0;    //!< Small ones that few points support.
+    int depth = 0;                //!< Of the octree.
+    double uncovered_area = 0.0;  //!< Share of the closed surface without points near it.
+    std::vector<CloudHole> holes; //!< Largest first.
+    int genus = 0;                //!< Sum over the components, boundary loops counted as closed.
+    int finer_genus = 0;          //!< The same when reconstructed with cells of half the size.
+    Index components = 0;         //!< That were kept.
+    Index dropped_components = 0; //!< Small ones that few points support.
+    double unused_points = 0.0;   //!< Ball pivoting: share of the points that are in no triangle.
     std::vector<std::string> doubts; //!< Why the topology is uncertain, in words; else empty.
 };
 
@@ -64,17 +75,18 @@ struct Reconstruction {
 };
 
 //! Reconstructs a surface from oriented points: that of screened Poisson reconstruction
-//! \cite kazhdan_2013, which is closed, opened where there are no points.
+//! \cite kazhdan_2013, which is closed, opened where there are no points; or that of ball pivoting
+//! \cite bernardini_1999, which is where the points are, with its small loops filled.
 //!
-//! A place farther than 2.2 spacings from every point (and three deviations of the noise) lies in a
-//! hole, which reaches out to 1.5 spacings from the points. Holes larger than options.fill_holes
-//! allows are cut out. Components with fewer than 30 points near them, or more than half without
-//! any, are dropped (never the one with most points).
+//! Poisson: a place farther than 2.2 spacings from every point (and three deviations of the noise)
+//! lies in a hole, which reaches out to 1.5 spacings from the points. Holes larger than
+//! options.fill_holes allows are cut out. Components with fewer than 30 points near them, or more
+//! than half without any, are dropped (never the one with most points).
 //!
 //! The topology is uncertain if the genus changes when the octree's cells are halved, if points
 //! contradict each other about inside and outside (`disagreement`, from orient_normals()), if the
-//! neighbourhoods fill space rather than show a surface, or if more of the closed surface is
-//! without points than with.
+//! neighbourhoods fill space rather than show a surface, if more of the closed surface is without
+//! points than with, or if balls meet less than nine of ten points.
 //!
 //! Cost O(n log n). The same for any thread count. Errors: bad_option, bad_geometry (no surface was
 //! found), cancelled. \pre estimate.normals point to one side; inward ones give a surface that

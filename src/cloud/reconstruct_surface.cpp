@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "bot2nurbs/reconstruct_surface.h"
 
+#include "cloud/ball_pivoting.h"
+#include "cloud/pivoted_mesh.h"
 #include "cloud/poisson_surface.h"
 #include "cloud/surface_coverage.h"
 
@@ -25,6 +27,8 @@ constexpr double most_disagreement = 0.005;
 //! they do not have.
 constexpr double most_noise_ratio = 0.175;
 
+//! Share of the points that may lie beside the surface that balls roll over: noise hides them.
+constexpr double most_unused = 0.1;
 //! Width of the gaps, in spacings, that are taken for chance: points scattered evenly leave a disk
 //! so wide empty with a chance of 3e-9 at any place.
 constexpr double chance_spacings = 5.0;
@@ -67,16 +71,31 @@ double diagonal_of(const std::vector<Vec3>& points, const SurfaceEstimate& estim
     return box.diagonal();
 }
 
-//! The Poisson surface without what is spurious, opened at the larger holes.
+//! A surface without what is spurious, open at the larger holes.
 struct TrimmedSurface {
     TriangleSoup mesh;
     int depth = 0;
     Index dropped = 0;
     double uncovered = 0.0; //!< Share of the closed surface.
+    double unused = 0.0;    //!< Share of the points.
     std::vector<CloudHole> holes;
     bool opened = false;
 };
 
+//! Whether a hole is one of those that the options fill.
+bool is_filled(const CloudHole& hole, const ReconstructOptions& options, double diagonal)
+{
+    return options.fill_holes ? hole.size <= *options.fill_holes * diagonal
+                              : hole.spacings <= chance_spacings;
+}
+
+void sort_holes(std::vector<CloudHole>& holes)
+{
+    std::stable_sort(holes.begin(), holes.end(),
+                     [](const CloudHole& a, const CloudHole& b) { return a.size > b.size; });
+}
+
+//! The Poisson surface.
 Result<TrimmedSurface> trimmed_surface(const std::vector<Vec3>& points,
                                        const SurfaceEstimate& estimate,
                                        const ReconstructOptions& options, int halvings,
@@ -103,8 +122,7 @@ Result<TrimmedSurface> trimmed_surface(const std::vector<Vec3>& points,
     const double diagonal = diagonal_of(points, estimate);
     std::vector<char> cut;
     for (CloudHole& hole : holes.holes) {
-        hole.filled = options.fill_holes ? hole.size <= *options.fill_holes * diagonal
-                                         : hole.spacings <= chance_spacings;
+        hole.filled = is_filled(hole, options, diagonal);
         cut.push_back(!hole.filled);
     }
     result.opened = std::count(cut.begin(), cut.end(), 1) > 0;
@@ -120,8 +138,40 @@ Result<TrimmedSurface> trimmed_surface(const std::vector<Vec3>& points,
         result.dropped += *dropped;
     }
     result.holes = std::move(holes.holes);
-    std::stable_sort(result.holes.begin(), result.holes.end(),
-                     [](const CloudHole& a, const CloudHole& b) { return a.size > b.size; });
+    sort_holes(result.holes);
+    return result;
+}
+
+//! The surface that balls roll over.
+Result<TrimmedSurface> pivoted_surface(const std::vector<Vec3>& points,
+                                       const SurfaceEstimate& estimate,
+                                       const ReconstructOptions& options, Context& context)
+{
+    const Result<std::vector<std::array<Index, 3>>> triangles =
+        pivot_balls(points, estimate, context);
+    if (!triangles)
+        return triangles.error();
+    if (triangles->empty())
+        return Error{ErrorCode::bad_geometry, "balls find no three points that show a surface",
+                     invalid_index};
+    TrimmedSurface result;
+    std::vector<char> used(points.size(), 0);
+    for (const auto& t : *triangles)
+        for (const Index v : t)
+            used[v] = 1;
+    const auto all = std::count(estimate.outlier.begin(), estimate.outlier.end(), 0);
+    result.unused = 1.0 - double(std::count(used.begin(), used.end(), 1)) / double(all);
+    result.mesh = mesh_of_fans(points, *triangles);
+    const Result<Index> dropped = drop_spurious(result.mesh, points, estimate, context);
+    if (!dropped)
+        return dropped.error();
+    result.dropped = *dropped;
+    const double diagonal = diagonal_of(points, estimate);
+    result.holes = fill_loops(
+        result.mesh, [&](const CloudHole& hole) { return is_filled(hole, options, diagonal); });
+    sort_holes(result.holes);
+    result.opened = std::any_of(result.holes.begin(), result.holes.end(),
+                                [](const CloudHole& hole) { return !hole.filled; });
     return result;
 }
 
@@ -173,6 +223,9 @@ void find_doubts(const SurfaceEstimate& estimate, double disagreement, SurfaceEv
         evidence.doubts.push_back("the points are too sparse or too noisy to show a surface: "
                                   "neighbourhoods of every size are " +
                                   percent(2.0 * estimate.noise_ratio) + " as thick as wide");
+    if (evidence.unused_points > most_unused)
+        evidence.doubts.push_back("balls do not meet " + percent(evidence.unused_points) +
+                                  " of the points");
     if (evidence.uncovered_area > most_uncovered)
         evidence.doubts.push_back("no points lie near " + percent(evidence.uncovered_area) +
                                   " of the closed surface");
@@ -183,18 +236,26 @@ Result<Reconstruction> reconstruct_outward(const std::vector<Vec3>& points,
                                            const SurfaceEstimate& estimate, double disagreement,
                                            const ReconstructOptions& options, Context& context)
 {
-    Result<TrimmedSurface> surface = trimmed_surface(points, estimate, options, 0, context);
+    const bool pivots = options.method == ReconstructionMethod::ball_pivoting;
+    Result<TrimmedSurface> surface = pivots
+                                         ? pivoted_surface(points, estimate, options, context)
+                                         : trimmed_surface(points, estimate, options, 0, context);
     if (!surface)
         return surface.error();
-    const Result<TrimmedSurface> finer = trimmed_surface(points, estimate, options, 1, context);
-    if (!finer)
-        return finer.error();
+    int finer_genus = genus_of(surface->mesh);
+    if (!pivots) {
+        const Result<TrimmedSurface> finer = trimmed_surface(points, estimate, options, 1, context);
+        if (!finer)
+            return finer.error();
+        finer_genus = genus_of(finer->mesh);
+    }
     Reconstruction result;
     SurfaceEvidence& evidence = result.evidence;
     evidence.depth = surface->depth;
     evidence.uncovered_area = surface->uncovered;
     evidence.genus = genus_of(surface->mesh);
-    evidence.finer_genus = genus_of(finer->mesh);
+    evidence.finer_genus = finer_genus;
+    evidence.unused_points = surface->unused;
     evidence.components = count_components(surface->mesh);
     evidence.dropped_components = surface->dropped;
     result.topology = surface->opened          ? CloudTopology::open
@@ -210,6 +271,15 @@ Result<Reconstruction> reconstruct_outward(const std::vector<Vec3>& points,
 
 } // namespace
 
+const char* name(ReconstructionMethod method)
+{
+    switch (method) {
+    case ReconstructionMethod::poisson: return "poisson";
+    case ReconstructionMethod::ball_pivoting: return "ball_pivoting";
+    }
+    return "";
+}
+
 const char* name(CloudTopology topology)
 {
     switch (topology) {
@@ -223,6 +293,10 @@ const char* name(CloudTopology topology)
 
 std::optional<Error> ReconstructOptions::check() const
 {
+    if (depth && method == ReconstructionMethod::ball_pivoting)
+        return Error{ErrorCode::bad_option,
+                     "a depth is one of the Poisson reconstruction: balls have none",
+                     invalid_index};
     if (depth && (*depth < 3 || *depth > 12))
         return Error{ErrorCode::bad_option,
                      "the depth " + std::to_string(*depth) + " is not in 3 .. 12", invalid_index};

@@ -19,6 +19,8 @@ constexpr double detail_spacings = 0.25;
 //! this from it shows something that it leaves out. Among scattered points the spacing is large: it
 //! counts up to a multiple of the median.
 constexpr double reach_spacings = 1.5, reach_deviations = 4.0, most_medians = 3.0;
+//! Beyond this from the nearest point a place of a surface is in a hole.
+constexpr double hole_spacings = 2.2, hole_deviations = 3.0;
 
 std::string place_text(const Vec3& p)
 {
@@ -190,6 +192,11 @@ std::vector<Warning> cloud_warnings(const CloudReport& r)
 double expected_deviation(const CloudReport& report)
 {
     return std::max(report.noise, detail_spacings * report.spacing);
+}
+
+double coverage_reach(const CloudReport& report)
+{
+    return hole_spacings * report.spacing + hole_deviations * report.noise;
 }
 
 Result<std::vector<PointData>> points_of_components(const CloudInput& cloud,

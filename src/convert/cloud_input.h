@@ -36,6 +36,10 @@ std::vector<Warning> cloud_warnings(const CloudReport& report);
 //! meet points more closely, and a point that is no nearer is an outlier, not a detail.
 double expected_deviation(const CloudReport& report);
 
+//! How far from the nearest point the surface still counts as seen: 2.2 median spacings, which
+//! reconstruct_surface() takes for the rim of a hole, and three deviations of the noise.
+double coverage_reach(const CloudReport& report);
+
 //! Shares the points out: each goes to the component it lies nearest to. Those that lie off the
 //! mesh, beside pieces of it that were left out, go to none: `off_mesh` says how many. Errors:
 //! cancelled.

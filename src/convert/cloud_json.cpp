@@ -62,7 +62,13 @@ Json deviation_json(const CloudReport& r)
             {"median", d.median},
             {"percentile_95", d.percentile_95},
             {"far_points", d.far_points},
-            {"within", within}};
+            {"within", within},
+            {"surface_to_points",
+             {{"samples", r.surface_to_points.samples},
+              {"covered", r.surface_to_points.covered},
+              {"reach", r.surface_to_points.reach},
+              {"max", r.surface_to_points.max},
+              {"rms", r.surface_to_points.rms}}}};
 }
 
 } // namespace
@@ -87,6 +93,7 @@ Json cloud_json(const CloudReport& r, bool fitted)
     j["finer_genus"] = r.evidence.finer_genus;
     j["components"] = r.evidence.components;
     j["dropped_components"] = r.evidence.dropped_components;
+    j["unused_points"] = r.evidence.unused_points;
     j["uncovered_area"] = r.evidence.uncovered_area;
     j["hole_count"] = r.evidence.holes.size();
     j["holes"] = holes_json(r.evidence.holes);
@@ -103,6 +110,7 @@ Json cloud_options_json(const CloudOptions& o)
     j["points"] = o.points;
     j["normals"] = name_of(o.normals);
     j["viewpoint"] = o.orient.viewpoint ? place_json(*o.orient.viewpoint) : Json(nullptr);
+    j["reconstruction"] = name(o.reconstruct.method);
     j["depth"] = o.reconstruct.depth ? Json(*o.reconstruct.depth) : Json(nullptr);
     j["fill_holes"] = o.reconstruct.fill_holes ? Json(*o.reconstruct.fill_holes) : Json(nullptr);
     return j;

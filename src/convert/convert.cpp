@@ -9,6 +9,7 @@
 #include "convert/domain_input.h"
 #include "convert/input.h"
 #include "convert/quads_input.h"
+#include "convert/surface_to_points.h"
 #include "convert/tessellation.h"
 #include "io/atomic_file.h"
 
@@ -232,6 +233,24 @@ void add_point_deviation(const std::vector<ConvertedComponent>& components, doub
     for (const double limit : limits)
         cloud.within.push_back(
             {limit, diagonal > 0.0 ? limit / diagonal : 0.0, share_within(distances, limit)});
+}
+
+//! The other way: of the surface from the points.
+Status add_surface_deviation(const std::vector<ConvertedComponent>& components,
+                             const CloudInput& input, CloudReport& cloud, Context& context)
+{
+    std::vector<const SplineSurface*> surfaces;
+    for (const ConvertedComponent& c : components)
+        if (c.surface.patch_count() > 0)
+            surfaces.push_back(&c.surface);
+    if (surfaces.empty() || input.points.empty())
+        return std::nullopt;
+    const Result<SurfaceToPoints> measured =
+        measure_surface_to_points(surfaces, input.points, coverage_reach(cloud), context);
+    if (!measured)
+        return measured.error();
+    cloud.surface_to_points = *measured;
+    return std::nullopt;
 }
 
 Result<std::string> to_bytes(Format format, const std::vector<Brep>& breps,
@@ -482,12 +501,16 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
     for (const ConvertedComponent& c : components)
         report.components.push_back(c.outcome);
     add_outcome_warnings(options, report);
-    if (report.cloud)
+    if (report.cloud) {
         add_point_deviation(components, report.diagonal,
                             options.tolerance
                                 ? std::optional(options.tolerance->of(report.diagonal))
                                 : std::nullopt,
                             *report.cloud);
+        if (Status failed =
+                add_surface_deviation(components, *input->cloud, *report.cloud, context))
+            return *failed;
+    }
     add_tolerance_warnings(report);
     add_detour_warnings(report);
     if (context.cancelled())

@@ -211,6 +211,39 @@ TEST(ReconstructSurface, the_same_for_any_thread_count)
     EXPECT_EQ(one.mesh.triangles(), three.mesh.triangles());
 }
 
+TEST(ReconstructSurface, balls_find_a_torus_and_half_a_sphere_without_adding_to_them)
+{
+    ReconstructOptions balls;
+    balls.method = ReconstructionMethod::ball_pivoting;
+    const auto torus = fixtures::torus_points(6000);
+    const Case whole = reconstructed(torus.points, balls);
+    EXPECT_TRUE(whole.mesh.closed());
+    EXPECT_EQ(whole.result.evidence.genus, 1);
+    EXPECT_TRUE(whole.result.topology == CloudTopology::closed ||
+                whole.result.topology == CloudTopology::holes_filled);
+    EXPECT_LT(rms(whole.mesh, from_torus), 1e-12); // its vertices are the points
+
+    std::vector<Vec3> half;
+    for (const Vec3& p : fixtures::sphere_points(8000).points)
+        if (p.z > 0.0)
+            half.push_back(p);
+    const Case open = reconstructed(half, balls);
+    EXPECT_EQ(open.result.topology, CloudTopology::open);
+    EXPECT_EQ(open.result.evidence.genus, 0);
+    for (const Vec3& p : open.mesh.positions())
+        EXPECT_GT(p.z, 0.0);
+}
+
+TEST(ReconstructSurface, balls_that_miss_points_in_noise_leave_the_topology_uncertain)
+{
+    ReconstructOptions balls;
+    balls.method = ReconstructionMethod::ball_pivoting;
+    const Case c =
+        reconstructed(fixtures::with_noise(fixtures::torus_points(6000).points, 0.05), balls);
+    EXPECT_GT(c.result.evidence.unused_points, 0.1);
+    EXPECT_EQ(c.result.topology, CloudTopology::uncertain);
+}
+
 TEST(ReconstructSurface, options_out_of_range_are_refused)
 {
     ReconstructOptions options;
@@ -218,6 +251,11 @@ TEST(ReconstructSurface, options_out_of_range_are_refused)
     EXPECT_TRUE(options.check());
     options = {};
     options.fill_holes = -0.1;
+    EXPECT_TRUE(options.check());
+    options = {};
+    options.method = ReconstructionMethod::ball_pivoting;
+    EXPECT_FALSE(options.check());
+    options.depth = 8; // balls have none
     EXPECT_TRUE(options.check());
     options = {};
     options.most_vertices = 0;

@@ -73,6 +73,13 @@ TEST_F(ConvertCloud, points_of_a_torus_become_a_solid_of_genus_one_through_them)
     EXPECT_FALSE(report.cloud->normals.given);
     EXPECT_EQ(report.cloud->deviation.points, report.cloud->fitted);
     EXPECT_LT(report.cloud->deviation.rms, 1e-3 * report.diagonal);
+    // The mean square distance to the nearest of evenly scattered points is the area of one over
+    // pi.
+    const SurfaceToPoints& back = report.cloud->surface_to_points;
+    EXPECT_EQ(back.samples, 144u * report.components[0].domain.faces);
+    EXPECT_GT(back.covered, 0.999 * back.samples);
+    EXPECT_LE(back.max, back.reach);
+    EXPECT_NEAR(back.rms, std::sqrt(4.0 * fixtures::pi * 0.4 / 5000.0), 0.1 * back.rms);
     EXPECT_EQ(report.deviation().source_to_surface.rms, report.cloud->deviation.rms);
     // The volume of a torus: 2 pi^2 R r^2.
     EXPECT_NEAR(report.components[0].brep.volume, 2.0 * fixtures::pi * fixtures::pi * 1.0 * 0.16,
@@ -187,9 +194,22 @@ TEST_F(ConvertCloud, a_hole_of_the_size_allowed_is_closed_with_a_warning)
     EXPECT_TRUE(report.solid());
     EXPECT_EQ(report.cloud->topology, CloudTopology::holes_filled);
     EXPECT_GT(report.cloud->anchors, 0u);
+    EXPECT_LT(report.cloud->surface_to_points.covered, report.cloud->surface_to_points.samples);
     const bool warned = std::any_of(report.warnings.begin(), report.warnings.end(),
                                     [](const Warning& w) { return w.code == "holes_filled"; });
     EXPECT_TRUE(warned);
+}
+
+TEST_F(ConvertCloud, balls_lead_to_a_solid_too)
+{
+    ConvertOptions options = options_for_points(fixtures::torus_points(5000).points);
+    options.cloud.reconstruct.method = ReconstructionMethod::ball_pivoting;
+    const ConvertReport report = converted(options);
+    EXPECT_TRUE(report.solid());
+    EXPECT_EQ(report.components[0].genus, 1);
+    EXPECT_LT(report.cloud->deviation.rms, 1e-3 * report.diagonal);
+    EXPECT_LT(report.cloud->evidence.unused_points, 0.02);
+    EXPECT_EQ(report.cloud->evidence.depth, 0);
 }
 
 TEST_F(ConvertCloud, two_bodies_become_two_solids)
