@@ -4,14 +4,16 @@
 
     bench/bench.py [--binary build/release/bot2nurbs] [--data ../shared/data/meshes]
                    [--quadriflow PATH] [--models bunny_3k,igea_134k] [--threads 1,2]
-                   [--repeat N] [--json bench.json] [--table docs/results/bench.md]
+                   [--repeat N] [--tolerance 0.3] [--json bench.json]
+                   [--table docs/results/bench.md]
 
 Every run reads a mesh and writes a .3dm file. The JSON has, for each run, its stages as the report
 gives them, and the processor time, wall time and peak memory the kernel counted; the table is made
 of it. Of repeated runs the one with the least processor time counts: other work on the machine
 only ever adds. --quadriflow names the command of QuadriFlow (github.com/hjwdzh/QuadriFlow), which
 then makes 200 quads of the 70k-triangle bunny between the runs of ours; without it that target is
-left out. Exit code 1 when a run fails or writes other bytes on other threads; a missed target is
+left out. With --tolerance every run refines to that many percent of the diagonal, which has targets
+of its own (docs/results/bench_tolerance.md). Exit code 1 when a run fails or writes other bytes on other threads; a missed target is
 shown in the table and is no failure, as times depend on the machine and its load.
 """
 
@@ -50,6 +52,9 @@ MOST_COMPARED_MIB = 400.0
 MOST_EXPONENT = 1.2
 MOST_LARGEST_MIB = 3 * 1024.0
 LEAST_SPEEDUP = 1.5
+# With --tolerance 0.3.
+MOST_TOLERANCE_SECONDS = 25.0
+MOST_TOLERANCE_MIB = 4 * 1024.0
 # Other work running on this share of a core and more makes wall times of two threads doubtful.
 IDLE_LOAD = 0.3
 
@@ -162,12 +167,13 @@ def measure(command, cwd):
     }, text
 
 
-def run_ours(binary, mesh, threads, folder):
+def run_ours(binary, mesh, threads, folder, options=()):
     output, report = folder / "out.3dm", folder / "report.json"
     run, text = measure(
-        [binary, mesh, output, "--threads", str(threads), "--json", report, "--quiet"], folder
+        [binary, mesh, output, "--threads", str(threads), "--json", report, "--quiet", *options],
+        folder,
     )
-    if run["exit_code"] != 0:
+    if run["exit_code"] not in (0, 7):
         print(text, file=sys.stderr)
         return run
     made = json.loads(report.read_text())
@@ -175,6 +181,7 @@ def run_ours(binary, mesh, threads, folder):
     run["triangles"] = made["input"]["faces"]
     run["patches"] = made["domain"]["faces"]
     run["sha256"] = hashlib.sha256(output.read_bytes()).hexdigest()
+    run["termination"] = made["fit"]["termination"]
     run["rms_percent"] = 100.0 * made["deviation"]["rms_relative"]
     return run
 
@@ -212,6 +219,24 @@ def judge(result):
         verdicts.append({"what": what, "measured": measured, "target": target, "met": met})
 
     compared = runs.get((COMPARED, 1))
+    if result["tolerance"]:
+        if compared:
+            add(
+                f"CPU of {COMPARED} to {result['tolerance']:g} %, one thread",
+                f"{compared['cpu_seconds']:.1f} s, {compared['termination']}",
+                f"at most {MOST_TOLERANCE_SECONDS:g} s",
+                compared["cpu_seconds"] <= MOST_TOLERANCE_SECONDS
+                and compared["termination"] == "tolerance_met",
+            )
+        if (LARGEST, 1) in runs:
+            peak = runs[LARGEST, 1]["peak_rss_mib"]
+            add(
+                f"peak memory of {runs[LARGEST, 1]['triangles']} triangles",
+                f"{peak:.0f} MiB",
+                f"at most {MOST_TOLERANCE_MIB:g} MiB",
+                peak <= MOST_TOLERANCE_MIB,
+            )
+        return verdicts
     if compared and result["quadriflow"]:
         ratio = compared["cpu_seconds"] / result["quadriflow"]["cpu_seconds"]
         add(
@@ -269,7 +294,9 @@ def table(result):
         f"Made by `bench/bench.py` with bot2nurbs {result['version']} ({result['commit']}) on "
         f"{result['date']}: {machine['processor']}, {machine['cores']} cores, least of "
         f"{result['repeat']} run{'s' if result['repeat'] > 1 else ''}. Every run reads a mesh and "
-        "writes a `.3dm` file with the default options. CPU is processor time of all threads; "
+        + ("writes a `.3dm` file with the default options. " if not result["tolerance"] else
+           f"writes a `.3dm` file with `--tolerance {result['tolerance']:g}%`. ")
+        + "CPU is processor time of all threads; "
         "wall time is what a clock shows and depends on what else the machine does.",
         "",
         "## Targets",
@@ -281,7 +308,7 @@ def table(result):
         lines.append(
             f"| {v['what']} | {v['measured']} | {v['target']} | {'yes' if v['met'] else '**no**'} |"
         )
-    if not result["quadriflow"]:
+    if not result["quadriflow"] and not result["tolerance"]:
         lines += ["", "Not compared with QuadriFlow: no `--quadriflow`."]
     lines += [
         "",
@@ -376,6 +403,7 @@ def parse_arguments():
     parser.add_argument("--models", default=",".join(LADDER))
     parser.add_argument("--threads", default="1,2")
     parser.add_argument("--repeat", type=int, default=1)
+    parser.add_argument("--tolerance", type=float, help="refine, to this percentage of the diagonal")
     parser.add_argument("--json", type=Path, help="write the measurements here")
     parser.add_argument("--table", type=Path, help="write the table here")
     parser.add_argument("--make-mesh", nargs=3, help=argparse.SUPPRESS)
@@ -396,6 +424,7 @@ def main():
         print(f"bench: no command at {arguments.binary}; build it or name it with --binary")
         return 1
     version = subprocess.run([binary, "--version"], capture_output=True, text=True).stdout.split()
+    options = ["--tolerance", f"{arguments.tolerance:g}%"] if arguments.tolerance else []
     quadriflow = arguments.quadriflow.resolve() if arguments.quadriflow else None
     if quadriflow and not os.access(quadriflow, os.X_OK):
         print(f"bench: no QuadriFlow at {arguments.quadriflow}: not compared")
@@ -407,6 +436,7 @@ def main():
         "date": datetime.date.today().isoformat(),
         "repeat": arguments.repeat,
         "machine": {"processor": processor(), "cores": os.cpu_count()},
+        "tolerance": arguments.tolerance,
         "models": [],
         "quadriflow": None,
     }
@@ -435,9 +465,9 @@ def main():
                 obj = made("obj", mesh, folder / "compared.obj")
             for _ in range(arguments.repeat):
                 for threads, of_threads in runs.items():
-                    run = run_ours(binary, mesh, threads, folder)
+                    run = run_ours(binary, mesh, threads, folder, options)
                     run.update(model=model, threads=threads)
-                    if run["exit_code"] != 0:
+                    if run["exit_code"] not in ((0, 7) if options else (0,)):
                         print(f"bench: {model} failed with exit code {run['exit_code']}")
                         failures += 1
                         continue
@@ -469,7 +499,7 @@ def main():
     result["verdicts"] = judge(result)
     for v in result["verdicts"]:
         print(f"{'met ' if v['met'] else 'MISS'}  {v['what']}: {v['measured']} ({v['target']})")
-    if not quadriflow:
+    if not quadriflow and not options:
         print("not compared with QuadriFlow: name its command with --quadriflow")
     if arguments.json:
         arguments.json.write_text(json.dumps(result, indent=1) + "\n")

@@ -17,7 +17,7 @@ packages=(
     libocct-data-exchange-dev libboost-dev libgtest-dev pkg-config)
 for argument in "$@"; do
     case $argument in
-    --render) packages+=(python3-vtk9 python3-numpy xvfb xauth) ;;
+    --render) packages+=(python3-vtk9 python3-numpy python3-matplotlib xvfb xauth) ;;
     --tidy) packages+=(clang-tidy-16) ;;
     --bench) packages+=(libbenchmark-dev) ;;
     *)

@@ -12,7 +12,13 @@ done
 cp "$work/bracket-layout.png" docs/images/bracket.png
 cp "$work/bracket-zebra.png" "$work/bracket-error.png" "$work/arch-zebra.png" docs/images
 cp "$work/hood-layout.png" docs/images/hood.png
-# Of docs/results/pictures.md, with the first.
+# Of docs/results/pictures.md, with the first. The scan is not ours, and is drawn where it is.
+if [[ -f ../shared/data/clouds/hoppe_distcap.xyz ]]; then
+    build/release/bot2nurbs ../shared/data/clouds/hoppe_distcap.xyz --quiet \
+        --tessellation "$work/distcap.ply"
+    scripts/render.py "$work/distcap.ply" "$work/distcap" > "$work/log" 2>&1
+    cp "$work/distcap-layout.png" docs/images
+fi
 for model in knot torso; do
     cp "$work/$model-layout.png" "$work/$model-error.png" docs/images
 done

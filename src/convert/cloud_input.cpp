@@ -172,12 +172,16 @@ std::vector<Warning> cloud_warnings(const CloudReport& r)
     }
     const auto left = static_cast<std::ptrdiff_t>(holes.size()) - filled;
     if (left > 0) {
-        const CloudHole& hole = *std::find_if_not(holes.begin(), holes.end(), is_filled);
+        const CloudHole& largest = *std::find_if_not(holes.begin(), holes.end(), is_filled);
+        const CloudHole& smallest = *std::find_if_not(holes.rbegin(), holes.rend(), is_filled);
+        const std::string sizes =
+            left == 1 ? fmt::format("{:.4g} across, at {}", largest.size, place_text(largest.place))
+                      : fmt::format("{:.4g} to {:.4g} across, the largest at {}", smallest.size,
+                                    largest.size, place_text(largest.place));
         warnings.push_back(
             {"holes_left_open",
-             fmt::format("{} left open; the largest, {:.4g} across, is at {}. "
-                         "--fill-holes {:.3g} closes them",
-                         places(left), hole.size, place_text(hole.place), 1.01 * hole.size),
+             fmt::format("{} left open: {}. --fill-holes SIZE closes those up to SIZE",
+                         places(left), sizes),
              invalid_index});
     }
     if (r.evidence.dropped_components > 0)

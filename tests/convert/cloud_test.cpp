@@ -169,6 +169,10 @@ TEST_F(ConvertCloud, half_a_sphere_is_an_open_surface_and_no_solid)
     EXPECT_FALSE(report.solid());
     EXPECT_EQ(report.cloud->topology, CloudTopology::open);
     EXPECT_EQ(report.components[0].boundary_loops, 1u);
+    EXPECT_TRUE(std::any_of(report.warnings.begin(), report.warnings.end(), [](const Warning& w) {
+        return w.code == "holes_left_open" &&
+               w.message.find("1 place without points is left open") != std::string::npos;
+    }));
 
     std::filesystem::remove(path("a.step"));
     options.closure = Closure::solid;
