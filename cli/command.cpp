@@ -157,8 +157,9 @@ std::variant<Command, int> parse_command(int argc, char** argv)
     std::string tolerance;
     CLI::Option* tolerance_option =
         app.add_option("--tolerance", tolerance,
-                       "Refine until INPUT and surface are proven to be this near each other: a "
-                       "length in units of INPUT, or a percentage of its diagonal")
+                       "Refine until INPUT and surface are proven to be this near each other, or "
+                       "all points this near the surface: a length in units of INPUT, or a "
+                       "percentage of its diagonal")
             ->type_name("0.05|0.1%")
             ->group(surface);
     unsigned max_patches = 0;

@@ -26,7 +26,7 @@ constexpr std::size_t seed_neighbors = 12;
 //! Relative depth inside a ball, and angle in radians, that count as rounding: grids have many
 //! points on one ball.
 constexpr double rounding = 1e-7;
-constexpr std::size_t triangles_per_poll = 4096;
+constexpr std::size_t triangles_per_poll = 4096, points_per_poll = 256;
 
 //! The centre of the ball of a radius that touches a, b and c, on the side that a, b, c are seen
 //! from in counterclockwise order; none when it is too small to touch all.
@@ -61,10 +61,12 @@ public:
         if (!advance(context))
             return false;
         for (Index i = 0; i < points_.size(); ++i) {
+            if (i % points_per_poll == 0 && context.cancelled())
+                return false;
             if (used_[i] == 0 && seed(i) && !advance(context))
                 return false;
         }
-        return !context.cancelled();
+        return true;
     }
 
     std::vector<std::array<Index, 3>> triangles;

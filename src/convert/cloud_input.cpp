@@ -130,13 +130,19 @@ std::optional<Error> refuse_cloud_solid(const CloudReport& report)
                      invalid_index};
     if (report.topology != CloudTopology::open)
         return std::nullopt;
-    const CloudHole& hole = report.evidence.holes.front();
+    const std::vector<CloudHole>& holes = report.evidence.holes; // the largest first
+    const auto hole = std::find_if(holes.begin(), holes.end(),
+                                   [](const CloudHole& candidate) { return !candidate.filled; });
+    const std::string bare = report.evidence.uncovered_area > 0.0
+                                 ? fmt::format("{:.1f} % of the closed surface has none near it; ",
+                                               100.0 * report.evidence.uncovered_area)
+                                 : std::string();
     return Error{
         ErrorCode::open_mesh,
-        fmt::format("the points do not close: {:.1f} % of the closed surface has none near "
-                    "it; the largest hole, {:.4g} across, is at {}. Leave out --solid for "
-                    "an open surface, or let --fill-holes close larger holes",
-                    100.0 * report.evidence.uncovered_area, hole.size, place_text(hole.place)),
+        fmt::format("the points do not close: {}the largest hole, {:.4g} across, is at {}. "
+                    "Leave out --solid for an open surface, or let --fill-holes close "
+                    "larger holes",
+                    bare, hole->size, place_text(hole->place)),
         invalid_index};
 }
 

@@ -145,9 +145,12 @@ Status measure_points(const PointData& points, const QuadComplex& complex,
     side.rms = d.rms;
     side.samples = d.points;
     side.worst = d.points > 0 ? points.positions[d.worst] : Vec3{};
-    if (result.outcome.tolerance && d.points > 0)
-        judge_points({points.positions[d.worst], d.max, (*feet)[d.worst].where, {}},
-                     result.outcome);
+    if (result.outcome.tolerance) {
+        FarPlace worst;
+        if (d.points > 0)
+            worst = {points.positions[d.worst], d.max, (*feet)[d.worst].where, {}};
+        judge_points(worst, result.outcome);
+    }
     return std::nullopt;
 }
 

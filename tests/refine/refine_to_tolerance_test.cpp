@@ -5,6 +5,7 @@
 #include "bot2nurbs/validate_domain.h"
 #include "domain/domain_paths.h"
 #include "hand_domains.h"
+#include "refine/trial.h"
 
 #include <gtest/gtest.h>
 
@@ -242,27 +243,33 @@ TEST(RefineToTolerance, noise_of_points_is_not_followed)
     EXPECT_LT(std::sqrt(sum / places), 0.35 * noise);
 }
 
-TEST(RefineToTolerance, a_surface_that_strays_from_the_mesh_between_points_is_not_within)
+TEST(PointTrial, a_surface_that_is_near_all_points_but_strays_from_the_mesh_is_not_within)
 {
-    // All points lie on the outer half: what the inner half does only the mesh says.
+    // Points around the outer equator: there a shift along the axis is one along the surface.
     const HandDomain hand = torus();
-    PointData all = points_of_torus(hand, 9000, 0.0), data;
-    for (std::size_t i = 0; i < all.positions.size(); ++i)
-        if (std::hypot(all.positions[i].x, all.positions[i].y) > 1.0) {
-            data.positions.push_back(all.positions[i]);
-            data.weights.push_back(all.weights[i]);
-            data.source.push_back(all.source[i]);
-        }
+    PointData data;
+    for (int i = 0; i < 200; ++i) {
+        const double u = 2.0 * 3.14159265358979323846 * i / 200.0;
+        data.positions.push_back({1.4 * std::cos(u), 1.4 * std::sin(u), 0.0});
+        data.weights.push_back(0.01);
+    }
     Context context;
-    const ToleranceOptions options = options_for(2e-3);
-    const Result<ToleranceFit> fit =
-        refine_to_tolerance(hand.mesh, hand.domain, options, &data, context);
-    ASSERT_TRUE(fit) << fit.error().message;
-    EXPECT_EQ(fit->termination, RefinementEnd::tolerance_met);
-    const auto bound =
-        bound_hausdorff(hand.mesh, fit->domain.complex, fit->fit.surface, {}, context);
-    ASSERT_TRUE(bound);
-    EXPECT_LE(bound->surface_to_source.lower, options.tolerance + 1e-3);
+    data.source = *closest_places(hand.mesh, data.positions, context);
+    const ToleranceOptions options = options_for(0.03);
+    const FitTarget target(hand.mesh, &data, options.tolerance);
+    EXPECT_LT(target.surface_limit, 0.04);
+    Result<Trial> trial = make_trial(target, hand.domain, options, context);
+    ASSERT_TRUE(trial) << trial.error().message;
+    ASSERT_FALSE(prove_trial(target, *trial, context));
+    EXPECT_TRUE(trial->within);
+    EXPECT_EQ(trial->exceeding(), 0u);
+
+    trial->fit.surface.transform(1.0, {0.0, 0.0, 0.1});
+    ASSERT_FALSE(prove_trial(target, *trial, context));
+    EXPECT_LT(trial->bound.source_to_surface.upper, options.tolerance);
+    EXPECT_FALSE(trial->within);
+    EXPECT_GT(trial->exceeding(), 0u);
+    EXPECT_NEAR(trial->distance(), 0.1 - (target.surface_limit - target.limit), 0.02);
 }
 
 TEST(RefineToTolerance, it_can_be_cancelled)
