@@ -215,8 +215,8 @@ std::variant<Command, int> parse_command(int argc, char** argv)
     CLI::Option* fill_holes_option =
         app.add_option("--fill-holes", fill_holes,
                        "Fill holes up to this size across: a length in units of INPUT, or a "
-                       "percentage of its diagonal (default: of a mesh none, among points gaps "
-                       "of five spacings)")
+                       "percentage of its diagonal (default: of a mesh none, among points such "
+                       "gaps as chance leaves)")
             ->type_name("0.5|2%")
             ->group(input);
     add_choice(app, "--components", o.components, component_modes,

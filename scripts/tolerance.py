@@ -93,6 +93,10 @@ tolerance, valid, without gaps and with joins within {MAX_ANGLE:g} degrees. Tole
 bounding box; the bound is proven, both ways, of the surface as written (`docs/algorithms/deviation.md`). Control points are those of the
 `.3dm` file; *folded* patches face away from the mesh somewhere. Seconds are of two cores that others use too: only their order of magnitude means something.
 
+![Patches against the proven distance](../images/tolerance.png)
+
+Drawn by `scripts/plot_tolerance.py`.
+
 | model | tolerance % | termination | patches | control points | rounds | bound % | rms % | largest valence | folded | join angle ° | B-Rep | seconds | peak MiB |
 |---|---:|---|---:|---:|---:|---:|---:|---:|---:|---:|---|---:|---:|
 """ + "\n".join(rows) + "\n"

@@ -28,8 +28,8 @@ struct ReconstructOptions {
     //! start, not the shape.
     Index most_vertices = 100000;
     //! Holes up to this size across, as a fraction of the diagonal of the points, are filled;
-    //! larger ones stay open. By default only gaps of up to five spacings of the points around
-    //! them, such as scattered points leave by chance.
+    //! larger ones stay open. By default only gaps such as points scattered evenly leave by chance
+    //! in one of a hundred clouds of so many: of about five spacings.
     std::optional<double> fill_holes;
 
     std::optional<Error> check() const;

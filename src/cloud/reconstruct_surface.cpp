@@ -29,9 +29,10 @@ constexpr double most_noise_ratio = 0.175;
 
 //! Share of the points that may lie beside the surface that balls roll over: noise hides them.
 constexpr double most_unused = 0.1;
-//! Width of the gaps, in spacings, that are taken for chance: points scattered evenly leave a disk
-//! so wide empty with a chance of 3e-9 at any place.
-constexpr double chance_spacings = 5.0;
+//! Of points scattered evenly, chance leaves a gap wider than chance_gap() in one cloud of so many.
+constexpr double clouds_a_gap = 100.0;
+//! The same for loops of balls, over the mean length of their edges, which are shorter in gaps.
+constexpr double loop_spacings = 5.0;
 
 std::string percent(double share)
 {
@@ -82,11 +83,25 @@ struct TrimmedSurface {
     bool opened = false;
 };
 
-//! Whether a hole is one of those that the options fill.
-bool is_filled(const CloudHole& hole, const ReconstructOptions& options, double diagonal)
+//! Width in spacings of the gaps that chance leaves among so many points. The circles around the 2
+//! n Delaunay triangles of n points of a Poisson process, which are the largest empty ones, have
+//! radii beyond r spacings with probability (1 + x) exp(-x), x = pi r^2 \cite miles_1970.
+double chance_gap(std::size_t points)
+{
+    constexpr double pi = 3.14159265358979323846;
+    const double count = std::log(2.0 * double(points) * clouds_a_gap);
+    double x = count;
+    for (int i = 0; i < 20; ++i)
+        x = count + std::log1p(x);
+    return 2.0 * std::sqrt(x / pi);
+}
+
+//! Whether a hole is one of those that the options fill, or else as wide as gaps are.
+bool is_filled(const CloudHole& hole, const ReconstructOptions& options, double diagonal,
+               double gap_spacings)
 {
     return options.fill_holes ? hole.size <= *options.fill_holes * diagonal
-                              : hole.spacings <= chance_spacings;
+                              : hole.spacings <= gap_spacings;
 }
 
 void sort_holes(std::vector<CloudHole>& holes)
@@ -119,10 +134,10 @@ Result<TrimmedSurface> trimmed_surface(const std::vector<Vec3>& points,
         std::accumulate(coverage->uncovered.begin(), coverage->uncovered.end(), 0.0) /
         std::accumulate(coverage->area.begin(), coverage->area.end(), 0.0);
     SurfaceHoles holes = find_holes(result.mesh, *coverage);
-    const double diagonal = diagonal_of(points, estimate);
+    const double diagonal = diagonal_of(points, estimate), gap = chance_gap(points.size());
     std::vector<char> cut;
     for (CloudHole& hole : holes.holes) {
-        hole.filled = is_filled(hole, options, diagonal);
+        hole.filled = is_filled(hole, options, diagonal, gap);
         cut.push_back(!hole.filled);
     }
     result.opened = std::count(cut.begin(), cut.end(), 1) > 0;
@@ -167,8 +182,9 @@ Result<TrimmedSurface> pivoted_surface(const std::vector<Vec3>& points,
         return dropped.error();
     result.dropped = *dropped;
     const double diagonal = diagonal_of(points, estimate);
-    result.holes = fill_loops(
-        result.mesh, [&](const CloudHole& hole) { return is_filled(hole, options, diagonal); });
+    result.holes = fill_loops(result.mesh, [&](const CloudHole& hole) {
+        return is_filled(hole, options, diagonal, loop_spacings);
+    });
     sort_holes(result.holes);
     result.opened = std::any_of(result.holes.begin(), result.holes.end(),
                                 [](const CloudHole& hole) { return !hole.filled; });

@@ -136,7 +136,7 @@ TEST(ReconstructSurface, a_gap_that_chance_may_leave_is_filled_unless_none_may_b
     const double spacing = std::sqrt(4.0 * fixtures::pi / 8000.0);
     std::vector<Vec3> pierced;
     for (const Vec3& p : s.points)
-        if (norm(p - Vec3{0.0, 0.0, 1.0}) > 2.55 * spacing)
+        if (norm(p - Vec3{0.0, 0.0, 1.0}) > 2.4 * spacing)
             pierced.push_back(p);
     const Case filled = reconstructed(pierced);
     EXPECT_EQ(filled.result.topology, CloudTopology::holes_filled);
