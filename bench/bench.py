@@ -13,7 +13,7 @@ of it. Of repeated runs the one with the least processor time counts: other work
 only ever adds. --quadriflow names the command of QuadriFlow (github.com/hjwdzh/QuadriFlow), which
 then makes 200 quads of the 70k-triangle bunny between the runs of ours; without it that target is
 left out. With --tolerance every run refines to that many percent of the diagonal, which has targets
-of its own (docs/results/bench_tolerance.md). Exit code 1 when a run fails or writes other bytes on other threads; a missed target is
+of its own. Exit code 1 when a run fails or writes other bytes on other threads; a missed target is
 shown in the table and is no failure, as times depend on the machine and its load.
 """
 
