@@ -45,7 +45,9 @@ enum class CloudTopology {
 //! "closed", "holes_filled", "open" or "uncertain".
 const char* name(CloudTopology topology);
 
-//! A part of the reconstructed surface without points near it.
+//! A part of the reconstructed surface without points near it; of ball pivoting, a boundary loop:
+//! its centre, the diagonal of its box, that over the mean length of its edges, and the area of the
+//! triangles that fill it.
 struct CloudHole {
     Vec3 place;            //!< The place farthest from the points.
     double size = 0.0;     //!< Twice its distance to them: about the width of the hole.

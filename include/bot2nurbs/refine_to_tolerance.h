@@ -36,7 +36,8 @@ struct ToleranceOptions {
 
 //! Why refinement ended.
 enum class RefinementEnd {
-    tolerance_met, //!< Proven: the upper bound of the distance both ways is within the tolerance.
+    tolerance_met, //!< Proven: the upper bound of the distance both ways is within the tolerance;
+                   //!< with points: all are, and the surface does not stray from their mesh.
     patch_limit,   //!< No patch that is beyond tolerance can be cut within max_patches, with what
                    //!< must be cut around it.
     noise_limit,   //!< Points: what is farther than the tolerance is no farther than their noise
@@ -64,7 +65,9 @@ struct RefinementRound {
 struct ToleranceFit {
     QuadDomain domain;
     FitResult fit;
-    HausdorffBound bound; //!< Decided about the tolerance, see HausdorffOptions::decide.
+    //! Decided about the tolerance, see HausdorffOptions::decide. With points only their side.
+    HausdorffBound bound;
+    Index anchors = 0; //!< With points: see make_point_samples().
     std::vector<RefinementRound> rounds;
     Index best = 0; //!< The round it is of.
     RefinementEnd termination = RefinementEnd::tolerance_met;

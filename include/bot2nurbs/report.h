@@ -54,7 +54,7 @@ struct ToleranceReport {
     double tolerance = 0.0;
     bool met = false; //!< Proven of the surface as written.
     RefinementEnd termination = RefinementEnd::tolerance_met;
-    DistanceBounds distance; //!< Of the surface as written, both ways.
+    DistanceBounds distance; //!< Of the surface as written, both ways; of points, theirs from it.
     FarPlace worst;          //!< Where distance.lower is.
     std::vector<RefinementRound> rounds;
     Index best = 0; //!< The round that is written.

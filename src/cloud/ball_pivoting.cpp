@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "cloud/ball_pivoting.h"
 
+#include "cloud/halfedge_key.h"
 #include "cloud/point_tree.h"
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
 #include <optional>
-#include <unordered_map>
+#include <unordered_set>
 
 namespace bot2nurbs {
 
@@ -20,6 +21,9 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double first_spacings = 1.2, last_spacings = 2.5;
 constexpr double dense_share = 0.05, sparse_share = 0.95;
 constexpr double growth = 1.6;
+//! Balls of more spacings do not roll at a point: they would bridge what the points there show to
+//! be open, and in places much denser than others touch too many points to try.
+constexpr double widest_spacings = 6.0;
 constexpr int most_radii = 10;
 //! Neighbours of a point that are tried for a first triangle.
 constexpr std::size_t seed_neighbors = 12;
@@ -47,9 +51,9 @@ std::optional<Vec3> ball_center(const Vec3& a, const Vec3& b, const Vec3& c, dou
 class BallPivoting {
 public:
     BallPivoting(const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
-                 const PointTree& tree)
-        : points_(points), normals_(normals), tree_(tree), used_(points.size(), 0),
-          open_edges_(points.size(), 0)
+                 const std::vector<double>& spacings, const PointTree& tree)
+        : points_(points), normals_(normals), spacings_(spacings), tree_(tree),
+          used_(points.size(), 0), open_edges_(points.size(), 0)
     {
     }
 
@@ -63,7 +67,7 @@ public:
         for (Index i = 0; i < points_.size(); ++i) {
             if (i % points_per_poll == 0 && context.cancelled())
                 return false;
-            if (used_[i] == 0 && seed(i) && !advance(context))
+            if (used_[i] == 0 && fits(i) && seed(i) && !advance(context))
                 return false;
         }
         return true;
@@ -79,8 +83,9 @@ private:
         Vec3 center;
     };
 
-    static std::uint64_t key(Index from, Index to) { return (std::uint64_t{from} << 32U) | to; }
-    bool taken(Index from, Index to) const { return halfedges_.count(key(from, to)) != 0; }
+    bool taken(Index from, Index to) const { return halfedges_.count(halfedge_key(from, to)) != 0; }
+    //! Whether the ball is not much larger than the gaps beside a point.
+    bool fits(Index i) const { return radius_ <= widest_spacings * spacings_[i]; }
 
     //! Whether a triangle faces where the normals of its corners do.
     bool agrees(Index a, Index b, Index c) const
@@ -104,7 +109,7 @@ private:
         for (std::size_t k = 0; k < 3; ++k) {
             const Index from = t[k], to = t[(k + 1) % 3];
             used_[from] = 1;
-            halfedges_.emplace(key(from, to), static_cast<Index>(triangles.size()));
+            halfedges_.insert(halfedge_key(from, to));
             if (taken(to, from)) {
                 --open_edges_[from];
                 --open_edges_[to];
@@ -147,7 +152,7 @@ private:
         for (const auto& t : triangles)
             for (std::size_t k = 0; k < 3; ++k) {
                 const Index a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];
-                if (taken(b, a))
+                if (taken(b, a) || !(fits(a) || fits(b)))
                     continue;
                 const auto center = ball_center(points_[a], points_[b], points_[c], radius_);
                 if (center && empty(*center, a, b, c))
@@ -162,7 +167,7 @@ private:
                 return false;
             const Edge edge = front_.front();
             front_.pop_front();
-            if (!taken(edge.b, edge.a))
+            if (!taken(edge.b, edge.a) && (fits(edge.a) || fits(edge.b)))
                 pivot(edge);
         }
         return true;
@@ -202,15 +207,17 @@ private:
 
     const std::vector<Vec3>& points_;
     const std::vector<Vec3>& normals_;
+    const std::vector<double>& spacings_;
     const PointTree& tree_;
     double radius_ = 0.0;
-    std::unordered_map<std::uint64_t, Index> halfedges_; //!< With their triangles.
+    std::unordered_set<std::uint64_t> halfedges_; //!< Of the triangles.
     std::deque<Edge> front_;
     std::vector<char> used_;
     std::vector<int> open_edges_; //!< Per point: edges with one triangle.
     std::vector<PointTree::Neighbor> found_;
 };
 
+//! \pre there are spacings
 std::vector<double> ball_radii(std::vector<double> spacings)
 {
     std::sort(spacings.begin(), spacings.end());
@@ -243,7 +250,7 @@ pivot_balls(const std::vector<Vec3>& points, const SurfaceEstimate& estimate, Co
     const Result<PointTree> tree = PointTree::build(kept, context);
     if (!tree)
         return tree.error();
-    BallPivoting balls(kept, normals, *tree);
+    BallPivoting balls(kept, normals, spacings, *tree);
     for (const double radius : ball_radii(spacings))
         if (!balls.roll(radius, context))
             return Context::cancelled_error("reconstruction");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cloud/pivoted_mesh.h"
 
+#include "cloud/halfedge_key.h"
 #include "cloud/loop_triangles.h"
 #include "core/disjoint_sets.h"
 
@@ -13,17 +14,12 @@ namespace {
 
 constexpr std::size_t most_loop_edges = 200;
 
-std::uint64_t key(Index from, Index to)
-{
-    return (std::uint64_t{from} << 32U) | to;
-}
-
 std::unordered_set<std::uint64_t> halfedges_of(const TriangleSoup& mesh)
 {
     std::unordered_set<std::uint64_t> halfedges;
     for (const auto& t : mesh.triangles)
         for (std::size_t k = 0; k < 3; ++k)
-            halfedges.insert(key(t[k], t[(k + 1) % 3]));
+            halfedges.insert(halfedge_key(t[k], t[(k + 1) % 3]));
     return halfedges;
 }
 
@@ -35,7 +31,7 @@ std::vector<std::vector<Index>> find_loops(const TriangleSoup& mesh,
     std::vector<Index> next(mesh.positions.size(), invalid_index);
     for (const auto& t : mesh.triangles)
         for (std::size_t k = 0; k < 3; ++k)
-            if (halfedges.count(key(t[(k + 1) % 3], t[k])) == 0)
+            if (halfedges.count(halfedge_key(t[(k + 1) % 3], t[k])) == 0)
                 next[t[(k + 1) % 3]] = t[k];
     std::vector<std::vector<Index>> loops;
     for (Index v = 0; v < next.size(); ++v) {
@@ -80,11 +76,11 @@ TriangleSoup mesh_of_fans(const std::vector<Vec3>& points,
     std::unordered_map<std::uint64_t, std::size_t> corner_of; // per halfedge, of its start
     for (std::size_t t = 0; t < triangles.size(); ++t)
         for (std::size_t k = 0; k < 3; ++k)
-            corner_of.emplace(key(triangles[t][k], triangles[t][(k + 1) % 3]), 3 * t + k);
+            corner_of.emplace(halfedge_key(triangles[t][k], triangles[t][(k + 1) % 3]), 3 * t + k);
     for (std::size_t t = 0; t < triangles.size(); ++t)
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t next = (k + 1) % 3;
-            const auto twin = corner_of.find(key(triangles[t][next], triangles[t][k]));
+            const auto twin = corner_of.find(halfedge_key(triangles[t][next], triangles[t][k]));
             if (twin == corner_of.end())
                 continue;
             const std::size_t other = twin->second, triangle = other / 3;
@@ -126,14 +122,14 @@ std::vector<CloudHole> fill_loops(TriangleSoup& mesh,
         const auto there = [&](int i, int j) {
             const Index a = loop[static_cast<std::size_t>(i)],
                         b = loop[static_cast<std::size_t>(j)];
-            return halfedges.count(key(a, b)) + halfedges.count(key(b, a)) > 0;
+            return halfedges.count(halfedge_key(a, b)) + halfedges.count(halfedge_key(b, a)) > 0;
         };
         for (const auto& corners : triangulate.find(polygon, there)) {
             std::array<Index, 3> t{};
             for (std::size_t k = 0; k < 3; ++k)
                 t[k] = loop[static_cast<std::size_t>(corners[k])];
             for (std::size_t k = 0; k < 3; ++k)
-                halfedges.insert(key(t[k], t[(k + 1) % 3]));
+                halfedges.insert(halfedge_key(t[k], t[(k + 1) % 3]));
             hole.area += 0.5 * norm(cross(mesh.positions[t[1]] - mesh.positions[t[0]],
                                           mesh.positions[t[2]] - mesh.positions[t[0]]));
             mesh.source_face.push_back(static_cast<Index>(mesh.triangles.size()));

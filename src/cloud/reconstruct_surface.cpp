@@ -29,9 +29,7 @@ constexpr double most_noise_ratio = 0.175;
 
 //! Share of the points that may lie beside the surface that balls roll over: noise hides them.
 constexpr double most_unused = 0.1;
-//! Of points scattered evenly, chance leaves a gap wider than chance_gap() in one cloud of so many.
-constexpr double clouds_a_gap = 100.0;
-//! The same for loops of balls, over the mean length of their edges, which are shorter in gaps.
+//! Size of the loops that balls leave by chance, over the mean length of their edges.
 constexpr double loop_spacings = 5.0;
 
 std::string percent(double share)
@@ -82,19 +80,6 @@ struct TrimmedSurface {
     std::vector<CloudHole> holes;
     bool opened = false;
 };
-
-//! Width in spacings of the gaps that chance leaves among so many points. The circles around the 2
-//! n Delaunay triangles of n points of a Poisson process, which are the largest empty ones, have
-//! radii beyond r spacings with probability (1 + x) exp(-x), x = pi r^2 \cite miles_1970.
-double chance_gap(std::size_t points)
-{
-    constexpr double pi = 3.14159265358979323846;
-    const double count = std::log(2.0 * double(points) * clouds_a_gap);
-    double x = count;
-    for (int i = 0; i < 20; ++i)
-        x = count + std::log1p(x);
-    return 2.0 * std::sqrt(x / pi);
-}
 
 //! Whether a hole is one of those that the options fill, or else as wide as gaps are.
 bool is_filled(const CloudHole& hole, const ReconstructOptions& options, double diagonal,
@@ -183,8 +168,10 @@ Result<TrimmedSurface> pivoted_surface(const std::vector<Vec3>& points,
     result.dropped = *dropped;
     const double diagonal = diagonal_of(points, estimate);
     result.holes = fill_loops(result.mesh, [&](const CloudHole& hole) {
-        return is_filled(hole, options, diagonal, loop_spacings);
+        return !context.cancelled() && is_filled(hole, options, diagonal, loop_spacings);
     });
+    if (context.cancelled())
+        return Context::cancelled_error("reconstruction");
     sort_holes(result.holes);
     result.opened = std::any_of(result.holes.begin(), result.holes.end(),
                                 [](const CloudHole& hole) { return !hole.filled; });

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -24,6 +25,10 @@ constexpr double rim_spacings = 1.5;
 constexpr double noise_deviations = 3.0;
 //! How near to the end of its edge a cut may come, as a share of the edge: triangles stay fat.
 constexpr double least_share = 0.1;
+//! Clouds of which one has a wider gap than chance_gap(), and fixed-point steps to find it: each
+//! divides the error by more than ten.
+constexpr double clouds_a_gap = 100.0;
+constexpr int gap_iterations = 16;
 constexpr std::size_t places_per_chunk = 512;
 
 //! Per vertex the number of its component, in order of first vertices, and how many there are.
@@ -170,6 +175,16 @@ SurfaceHoles find_holes(const TriangleSoup& mesh, const SurfaceCoverage& coverag
         found.spacings = std::max(found.spacings, 2.0 * coverage.spacings[v]);
     }
     return result;
+}
+
+double chance_gap(std::size_t points)
+{
+    constexpr double pi = 3.14159265358979323846;
+    const double start = std::log(2.0 * double(points) * clouds_a_gap);
+    double x = start;
+    for (int i = 0; i < gap_iterations; ++i)
+        x = start + std::log1p(x);
+    return 2.0 * std::sqrt(x / pi);
 }
 
 TriangleSoup cut_out(const TriangleSoup& mesh, const SurfaceCoverage& coverage,

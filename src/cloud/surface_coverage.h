@@ -39,6 +39,12 @@ struct SurfaceHoles {
 };
 SurfaceHoles find_holes(const TriangleSoup& mesh, const SurfaceCoverage& coverage);
 
+//! Width in spacings of the widest gap that chance leaves in one of a hundred clouds of so many
+//! evenly scattered points. The circles around the 2 n Delaunay triangles of n points of a Poisson
+//! process, of which the widest gaps are, have radii beyond r spacings with probability (1 + x)
+//! exp(-x), x = pi r^2 \cite miles_1970. \pre points > 0
+double chance_gap(std::size_t points);
+
 //! The mesh without the marked holes, cut along the line where the points end. Triangles across the
 //! line are split; what remains is manifold where the mesh was.
 TriangleSoup cut_out(const TriangleSoup& mesh, const SurfaceCoverage& coverage,

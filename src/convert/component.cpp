@@ -359,6 +359,7 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
         log_rounds(*outcome.tolerance, context);
         result.domain = std::move(refined->domain);
         fit = std::move(refined->fit);
+        result.anchors = refined->anchors;
     }
     outcome.domain = describe(result.domain);
 

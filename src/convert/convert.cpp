@@ -493,15 +493,8 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
         components.push_back(std::move(*converted));
     }
 
-    context.begin_stage("write");
-    Result<std::vector<PendingFile>> files =
-        make_files(options, report.units, mesh, forms, components, context);
-    if (!files)
-        return files.error();
-    for (const ConvertedComponent& c : components)
-        report.components.push_back(c.outcome);
-    add_outcome_warnings(options, report);
     if (report.cloud) {
+        context.begin_stage("points");
         add_point_deviation(components, report.diagonal,
                             options.tolerance
                                 ? std::optional(options.tolerance->of(report.diagonal))
@@ -511,6 +504,15 @@ Result<ConvertReport> convert(const ConvertOptions& options, Context& context)
                 add_surface_deviation(components, *input->cloud, *report.cloud, context))
             return *failed;
     }
+
+    context.begin_stage("write");
+    Result<std::vector<PendingFile>> files =
+        make_files(options, report.units, mesh, forms, components, context);
+    if (!files)
+        return files.error();
+    for (const ConvertedComponent& c : components)
+        report.components.push_back(c.outcome);
+    add_outcome_warnings(options, report);
     add_tolerance_warnings(report);
     add_detour_warnings(report);
     if (context.cancelled())

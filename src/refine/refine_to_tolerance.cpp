@@ -176,6 +176,7 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
     result.domain = std::move(best.domain);
     result.fit = std::move(best.fit);
     result.bound = std::move(best.bound);
+    result.anchors = best.anchors;
     return result;
 }
 

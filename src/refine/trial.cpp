@@ -56,6 +56,7 @@ void measure_samples(const SurfaceSampleSet& samples, const std::vector<std::siz
 
 struct FitSamples {
     SurfaceSampleSet all;
+    Index anchors = 0;
     std::vector<std::size_t> first; // Per quad, without points: see measure_samples().
 };
 
@@ -65,9 +66,8 @@ Result<FitSamples> samples_of(const FitTarget& target, const QuadComplex& comple
 {
     FitSamples result;
     if (target.points != nullptr) {
-        Index anchors = 0;
-        Result<SurfaceSampleSet> made =
-            make_point_samples(target.source, complex, charts, *target.points, anchors, context);
+        Result<SurfaceSampleSet> made = make_point_samples(target.source, complex, charts,
+                                                           *target.points, result.anchors, context);
         if (!made)
             return made.error();
         result.all = std::move(*made);
@@ -147,6 +147,7 @@ Result<Trial> make_trial(const FitTarget& target, QuadDomain domain,
     if (!fit)
         return fit.error();
     trial.fit = std::move(*fit);
+    trial.anchors = samples->anchors;
 
     trial.patches.resize(complex.quad_count());
     if (target.points != nullptr)

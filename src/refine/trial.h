@@ -25,6 +25,7 @@ struct Trial {
     HausdorffBound bound; //!< With points: of these alone.
     std::vector<PatchError> patches;
     bool within = false; //!< Proven to be within the tolerance.
+    Index anchors = 0;   //!< With points: samples of the source that stand in for some.
 
     Index exceeding() const;
     Index beyond() const;

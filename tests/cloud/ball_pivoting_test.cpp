@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "bot2nurbs/orient_normals.h"
 #include "cloud/ball_pivoting.h"
 #include "cloud/pivoted_mesh.h"
 #include "cloud/surface_coverage.h"
@@ -7,8 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <limits>
 #include <map>
 #include <set>
 
@@ -123,6 +120,30 @@ TEST(BallPivoting, two_sheets_that_face_away_from_each_other_stay_apart)
     EXPECT_GT(triangles.size(), 2000u);
     for (const auto& t : triangles)
         EXPECT_TRUE((t[0] < 625) == (t[1] < 625) && (t[1] < 625) == (t[2] < 625));
+}
+
+TEST(BallPivoting, a_dense_patch_of_a_sparse_surface_keeps_its_detail_and_joins_the_rest)
+{
+    // Beyond a ring of its own spacing, points four times as dense.
+    fixtures::SampledSurface s;
+    const auto add = [&](double x, double y) {
+        s.points.push_back({x, y, 0.0});
+        s.normals.push_back({0.0, 0.0, 1.0});
+    };
+    for (int j = -12; j <= 12; ++j)
+        for (int i = -12; i <= 12; ++i)
+            if (std::max(std::abs(i), std::abs(j)) > 4)
+                add(i, j);
+    for (int j = -16; j <= 16; ++j)
+        for (int i = -16; i <= 16; ++i)
+            add(0.25 * i, 0.25 * j);
+    const Triangles triangles = pivoted(s);
+    expect_oriented_edges(triangles);
+    EXPECT_EQ(points_used(triangles), s.points.size());
+    double area = 0.0;
+    for (const auto& t : triangles)
+        area += 0.5 * cross(s.points[t[1]] - s.points[t[0]], s.points[t[2]] - s.points[t[0]]).z;
+    EXPECT_NEAR(area, 24.0 * 24.0, 1e-9);
 }
 
 TEST(BallPivoting, it_can_be_cancelled)

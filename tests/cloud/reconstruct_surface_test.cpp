@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "bot2nurbs/orient_normals.h"
 #include "bot2nurbs/reconstruct_surface.h"
+#include "cloud/point_tree.h"
+#include "cloud/surface_coverage.h"
 #include "cloud_fixtures.h"
 
 #include <functional>
@@ -130,21 +132,58 @@ TEST(ReconstructSurface, a_hole_within_the_size_allowed_is_filled_and_said_so)
                 0.5 / std::sqrt(4.0 * fixtures::pi / 8000.0), 4.0);
 }
 
-TEST(ReconstructSurface, a_gap_that_chance_may_leave_is_filled_unless_none_may_be)
+//! Points of a sphere without those up to so many spacings from its pole.
+std::vector<Vec3> pierced_sphere(double spacings)
 {
-    SampledSurface s = fixtures::sphere_points(8000);
     const double spacing = std::sqrt(4.0 * fixtures::pi / 8000.0);
     std::vector<Vec3> pierced;
-    for (const Vec3& p : s.points)
-        if (norm(p - Vec3{0.0, 0.0, 1.0}) > 2.4 * spacing)
+    for (const Vec3& p : fixtures::sphere_points(8000).points)
+        if (norm(p - Vec3{0.0, 0.0, 1.0}) > spacings * spacing)
             pierced.push_back(p);
+    return pierced;
+}
+
+TEST(ReconstructSurface,
+     a_gap_that_chance_may_leave_is_filled_unless_none_may_be_and_a_wider_one_not)
+{
+    const std::vector<Vec3> pierced = pierced_sphere(2.4);
     const Case filled = reconstructed(pierced);
     EXPECT_EQ(filled.result.topology, CloudTopology::holes_filled);
     EXPECT_TRUE(filled.mesh.closed());
     ReconstructOptions options;
     options.fill_holes = 0.0;
-    const Case open = reconstructed(pierced, options);
-    EXPECT_EQ(open.result.topology, CloudTopology::open);
+    EXPECT_EQ(reconstructed(pierced, options).result.topology, CloudTopology::open);
+    EXPECT_EQ(reconstructed(pierced_sphere(2.7)).result.topology, CloudTopology::open);
+}
+
+TEST(ChanceGap, is_wider_than_the_widest_gap_of_nearly_every_cloud_but_not_by_much)
+{
+    // Clouds in a square, 20 spacings wide; gaps are sought on a grid in its middle.
+    constexpr std::size_t count = 400;
+    constexpr int clouds = 150, side = 70;
+    const double gap = chance_gap(count);
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> coordinate(0.0, 20.0);
+    int wider = 0, nearly = 0;
+    for (int c = 0; c < clouds; ++c) {
+        std::vector<Vec3> points;
+        while (points.size() < count)
+            points.push_back({coordinate(random), coordinate(random), 0.0});
+        Context context;
+        const auto tree = PointTree::build(points, context);
+        ASSERT_TRUE(tree);
+        double widest = 0.0;
+        for (int j = 0; j < side; ++j)
+            for (int i = 0; i < side; ++i) {
+                const Vec3 p{3.0 + 0.2 * i, 3.0 + 0.2 * j, 0.0};
+                widest = std::max(widest, 2.0 * std::sqrt(tree->nearest(p).distance2));
+            }
+        wider += widest > gap;
+        nearly += widest > 0.65 * gap;
+    }
+    EXPECT_LE(wider, 5);
+    EXPECT_GT(nearly, 9 * clouds / 10);
+    EXPECT_GT(chance_gap(1000000), gap);
 }
 
 TEST(ReconstructSurface, a_flat_sheet_of_points_is_open)

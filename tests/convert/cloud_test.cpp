@@ -49,6 +49,14 @@ protected:
     }
 };
 
+//! Whether there is a warning of this code whose message has this text.
+bool warned(const ConvertReport& report, const std::string& code, const std::string& text = "")
+{
+    return std::any_of(report.warnings.begin(), report.warnings.end(), [&](const Warning& w) {
+        return w.code == code && w.message.find(text) != std::string::npos;
+    });
+}
+
 std::vector<Vec3> half_sphere(std::size_t n)
 {
     std::vector<Vec3> half;
@@ -133,12 +141,8 @@ TEST_F(ConvertCloud, a_tolerance_below_the_noise_is_warned_of_and_not_met_with_w
     EXPECT_EQ(report.components[0].fit.termination, "noise_limit");
     EXPECT_LT(report.components[0].domain.faces, 200u);
     EXPECT_NEAR(report.cloud->deviation.rms, 0.02, 0.25 * 0.02);
-    const auto warned = [&](const char* code) {
-        return std::any_of(report.warnings.begin(), report.warnings.end(),
-                           [&](const Warning& w) { return w.code == code; });
-    };
-    EXPECT_TRUE(warned("tolerance_below_noise"));
-    EXPECT_TRUE(warned("tolerance_not_met"));
+    EXPECT_TRUE(warned(report, "tolerance_below_noise"));
+    EXPECT_TRUE(warned(report, "tolerance_not_met"));
     // The share within the tolerance is among those listed.
     const auto& within = report.cloud->within;
     ASSERT_EQ(within.size(), 4u);
@@ -169,10 +173,7 @@ TEST_F(ConvertCloud, half_a_sphere_is_an_open_surface_and_no_solid)
     EXPECT_FALSE(report.solid());
     EXPECT_EQ(report.cloud->topology, CloudTopology::open);
     EXPECT_EQ(report.components[0].boundary_loops, 1u);
-    EXPECT_TRUE(std::any_of(report.warnings.begin(), report.warnings.end(), [](const Warning& w) {
-        return w.code == "holes_left_open" &&
-               w.message.find("1 place without points is left open") != std::string::npos;
-    }));
+    EXPECT_TRUE(warned(report, "holes_left_open", "1 place without points is left open"));
 
     std::filesystem::remove(path("a.step"));
     options.closure = Closure::solid;
@@ -199,9 +200,13 @@ TEST_F(ConvertCloud, a_hole_of_the_size_allowed_is_closed_with_a_warning)
     EXPECT_EQ(report.cloud->topology, CloudTopology::holes_filled);
     EXPECT_GT(report.cloud->anchors, 0u);
     EXPECT_LT(report.cloud->surface_to_points.covered, report.cloud->surface_to_points.samples);
-    const bool warned = std::any_of(report.warnings.begin(), report.warnings.end(),
-                                    [](const Warning& w) { return w.code == "holes_filled"; });
-    EXPECT_TRUE(warned);
+
+    options.tolerance = Length{1e-2, true};
+    const ConvertReport near = converted(options);
+    EXPECT_TRUE(near.tolerance_met());
+    EXPECT_TRUE(near.solid());
+    EXPECT_GT(near.cloud->anchors, 0u);
+    EXPECT_TRUE(warned(report, "holes_filled"));
 }
 
 TEST_F(ConvertCloud, balls_lead_to_a_solid_too)

@@ -5,7 +5,7 @@
 #include "bot2nurbs/validate_domain.h"
 #include "domain/domain_paths.h"
 #include "hand_domains.h"
-#include "refine/trial.h"
+#include "refine/point_trial.h"
 
 #include <gtest/gtest.h>
 
@@ -241,6 +241,41 @@ TEST(RefineToTolerance, noise_of_points_is_not_followed)
                 ++places;
             }
     EXPECT_LT(std::sqrt(sum / places), 0.35 * noise);
+}
+
+TEST(PointTrial, what_changes_along_u_alone_is_told_from_what_changes_along_v)
+{
+    const HandDomain hand = torus();
+    Context context;
+    const ToleranceOptions options = options_for(1.0);
+    const PointData data = points_of_torus(hand, 3000, 0.0);
+    const FitTarget target(hand.mesh, &data, options.tolerance);
+    Result<Trial> trial = make_trial(target, hand.domain, options, context);
+    ASSERT_TRUE(trial) << trial.error().message;
+    const SplineSurface& surface = trial->fit.surface;
+    SurfaceSampleSet samples;
+    const auto add = [&](Index quad, double u, double v, double height) {
+        const SurfacePoint p = surface.evaluate({quad, u, v});
+        samples.positions.push_back(p.position - height * normalized(cross(p.du, p.dv)));
+        samples.domain.push_back({quad, u, v});
+    };
+    for (int j = 0; j < 8; ++j)
+        for (int i = 0; i < 8; ++i) {
+            const double u = (i + 0.5) / 8.0, v = (j + 0.5) / 8.0;
+            add(0, u, v, 0.01 * u);
+            add(1, u, v, 0.01 * v);
+        }
+    add(2, 0.1, 0.1, 0.0); // its neighbours have no sample
+    add(2, 0.9, 0.9, 0.01);
+    std::vector<PatchError> patches(surface.patch_count());
+    measure_points(samples, samples.size(), surface, patches);
+    // The means of cells a quarter apart differ by a quarter of 0.01.
+    EXPECT_NEAR(patches[0].change[0], 0.0025 * 0.0025, 1e-12);
+    EXPECT_NEAR(patches[0].change[1], 0.0, 1e-12);
+    EXPECT_NEAR(patches[1].change[0], 0.0, 1e-12);
+    EXPECT_NEAR(patches[1].change[1], 0.0025 * 0.0025, 1e-12);
+    EXPECT_EQ(patches[2].change, (std::array<double, 2>{}));
+    EXPECT_NEAR(patches[2].distance, 0.01, 1e-12);
 }
 
 TEST(PointTrial, a_surface_that_is_near_all_points_but_strays_from_the_mesh_is_not_within)
