@@ -27,7 +27,8 @@ import bench
 
 ROOT = Path(__file__).resolve().parent.parent
 RING, TUBE, WAVE = 3.0, 1.0, 0.12
-# What the project promises of the largest cloud.
+# What the project promises of a cloud of so many points.
+JUDGED = 1_000_000
 MOST_MIB = 6 * 1024.0
 MOST_POISSON_TIMES = 3.0
 STAGES = ("read", "normals", "reconstruct", "layout", "samples", "fit", "bound")
@@ -85,13 +86,25 @@ def poisson_seconds(points, normals, depth):
     return seconds
 
 
+def verdict(count, run, ratio):
+    """A row for each target that a run decides: what, measured, target, met."""
+    if count != JUDGED:
+        return []
+    memory, limit = run["peak_rss_mib"], f"at most {MOST_MIB:.0f} MiB"
+    rows = [["peak memory", f"{memory:.0f} MiB", limit, memory <= MOST_MIB]]
+    if ratio:
+        rows.append(["CPU over that of the bare reconstruction", f"{ratio:.2f}",
+                     f"at most {MOST_POISSON_TIMES:g}", ratio <= MOST_POISSON_TIMES])
+    return [[f"{count:,} points: {row[0]}", *row[1:3], "yes" if row[3] else "**no**"] for row in rows]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--binary", type=Path, default=ROOT / "build/release/bot2nurbs")
     parser.add_argument("--points", default="10000,100000,1000000")
     parser.add_argument("--table", type=Path)
     args = parser.parse_args()
-    rows, times, failed = [], [], False
+    rows, times, targets, failed = [], [], [], False
     with tempfile.TemporaryDirectory(prefix="bot2nurbs_") as name:
         folder = Path(name)
         for count in map(int, args.points.split(",")):
@@ -106,6 +119,7 @@ def main():
             stages = bench.stage_seconds(run)
             ratio = run["cpu_seconds"] / poisson if poisson else None
             times.append((count, run["cpu_seconds"]))
+            targets += verdict(count, run, ratio)
             rows.append([f"{count:,}", str(run["patches"]), f"{run['cpu_seconds']:.1f}",
                          f"{run['peak_rss_mib']:.0f}", str(depth),
                          f"{poisson:.1f}" if poisson else "-", f"{ratio:.2f}" if ratio else "-"]
@@ -120,9 +134,11 @@ def main():
         "bare reconstruction of Open3D at the same depth, of points with their true normals, in the same run.", "",
         "| " + " | ".join(heads) + " |", "|--:|" + "--:|" * (len(heads) - 1),
         *("| " + " | ".join(row) + " |" for row in rows), "",
-        f"Growth: CPU grows as the number of points to the power {growth}. Targets for a million points: at most {MOST_MIB:.0f} MiB,"
-        f" and {MOST_POISSON_TIMES:g} times the bare reconstruction.",
+        f"CPU grows as the number of points to the power {growth}.",
     ]
+    if targets:
+        lines += ["", "| what | measured | target | met |", "|---|---|---|---|",
+                  *("| " + " | ".join(row) + " |" for row in targets)]
     if args.table:
         args.table.write_text("\n".join(lines) + "\n")
     return 1 if failed else 0

@@ -57,8 +57,8 @@ def main():
     parser.add_argument("--output", type=Path)
     args = parser.parse_args()
     if not args.data.is_dir():
-        print(f"schemes.py: no models in {args.data}: nothing to do", file=sys.stderr)
-        return 0
+        print(f"schemes.py: no models in {args.data}", file=sys.stderr)
+        return 1
     heads = ["model", "scheme", "patches", "kB", "CPU s", "bound %", "rms %", "folded"]
     lines = [
         "# Spline schemes", "",
@@ -70,7 +70,7 @@ def main():
         for tolerance in (None, args.tolerance):
             lines += ["", f"## {'Patches of default' if tolerance is None else f'To {tolerance:g} %'}", "",
                       "| " + " | ".join(heads) + " |", "|---|---|" + "--:|" * (len(heads) - 2)]
-            for model in args.models or DEFAULT:
+            for model in args.models:
                 for scheme in SCHEMES:
                     cells, error = convert(args.command, find_model(args.data, model), scheme,
                                            tolerance, Path(name))

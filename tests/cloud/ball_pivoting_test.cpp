@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -92,19 +93,51 @@ TEST(BallPivoting,
 
 TEST(BallPivoting, points_of_a_grid_of_which_many_lie_on_one_ball_leave_no_gaps)
 {
-    fixtures::SampledSurface s;
-    constexpr Index side = 30;
-    for (Index j = 0; j < side; ++j)
-        for (Index i = 0; i < side; ++i) {
-            s.points.push_back({double(i), double(j), 0.0});
-            s.normals.push_back({0.0, 0.0, 1.0});
-        }
-    const Triangles triangles = pivoted(s);
-    expect_oriented_edges(triangles);
-    double area = 0.0;
-    for (const auto& t : triangles)
-        area += 0.5 * cross(s.points[t[1]] - s.points[t[0]], s.points[t[2]] - s.points[t[0]]).z;
-    EXPECT_NEAR(area, (side - 1.0) * (side - 1.0), 1e-9);
+    // Turned, so that rounding puts some of them a little inside the ball and others outside.
+    for (const double turn : {0.0, 0.3, 0.7, 1.1}) {
+        const Vec3 along = normalized(Vec3{std::cos(turn), std::sin(turn), turn});
+        const Vec3 normal = normalized(cross(along, Vec3{0.2, -0.5, 1.0}));
+        const Vec3 across = cross(normal, along);
+        fixtures::SampledSurface s;
+        constexpr Index side = 30;
+        for (Index j = 0; j < side; ++j)
+            for (Index i = 0; i < side; ++i) {
+                s.points.push_back(double(i) * along + double(j) * across);
+                s.normals.push_back(normal);
+            }
+        const Triangles triangles = pivoted(s);
+        expect_oriented_edges(triangles);
+        double area = 0.0;
+        for (const auto& t : triangles)
+            area += 0.5 * dot(normal, cross(s.points[t[1]] - s.points[t[0]],
+                                            s.points[t[2]] - s.points[t[0]]));
+        EXPECT_NEAR(area, (side - 1.0) * (side - 1.0), 1e-9);
+    }
+}
+
+TEST(BallPivoting, a_ball_that_comes_down_from_a_ledge_does_not_tie_it_to_the_middle_of_a_floor)
+{
+    SurfaceEstimate estimate;
+    std::vector<Vec3> points;
+    for (int j = 0; j < 20; ++j)
+        for (int i = 0; i < 20; ++i)
+            points.push_back({double(i), double(j), 0.0});
+    const auto floor = static_cast<Index>(points.size());
+    // Out of the reach of the smallest balls, not of the larger ones.
+    points.insert(points.end(), {{9.0, 9.5, 2.45}, {10.0, 9.5, 2.45}, {9.5, 8.6, 2.75}});
+    estimate.normals.assign(points.size(), {0.0, 0.0, 1.0});
+    estimate.spacing.assign(points.size(), 1.0);
+    estimate.outlier.assign(points.size(), 0);
+    Context context;
+    const auto triangles = pivot_balls(points, estimate, context);
+    ASSERT_TRUE(triangles);
+    Index of_ledge = 0;
+    for (const auto& t : *triangles) {
+        const auto high = std::count_if(t.begin(), t.end(), [&](Index v) { return v >= floor; });
+        EXPECT_TRUE(high == 0 || high == 3);
+        of_ledge += high == 3;
+    }
+    EXPECT_EQ(of_ledge, 1u);
 }
 
 TEST(BallPivoting, two_sheets_that_face_away_from_each_other_stay_apart)

@@ -270,17 +270,20 @@ TEST(FitNetwork, a_fit_that_knows_the_noise_does_not_follow_it)
 
 TEST(FitNetwork, noise_elsewhere_does_not_keep_the_surface_from_detail_that_is_no_noise)
 {
-    const Target target = sphere_target(2);
-    SurfaceSampleSet samples = sample_target(target, 4);
-    constexpr double noise = 0.01;
+    // A bump as wide as a quad, of a thousandth of the surface: all samples together are within the
+    // noise without it.
+    const Target target = sphere_target(3);
+    SurfaceSampleSet samples = sample_target(target, 2);
+    constexpr double noise = 0.01, width = 0.15;
     std::mt19937 generator(5);
     std::normal_distribution<double> step(0.0, noise);
-    const auto bump = [](const Vec3& p) {
-        const double off = std::acos(std::clamp(p.z / norm(p), -1.0, 1.0)) / 0.15;
-        return 0.15 * std::exp(-off * off);
+    const auto from_pole = [](const Vec3& p) {
+        return std::acos(std::clamp(p.z / norm(p), -1.0, 1.0));
     };
-    for (Vec3& p : samples.positions)
-        p *= 1.0 + bump(p) + step(generator);
+    for (Vec3& p : samples.positions) {
+        const double off = from_pole(p) / width;
+        p *= 1.0 + 8.0 * noise * std::exp(-off * off) + step(generator);
+    }
     FitOptions options;
     options.noise = noise;
     const Fit f = fit(target.domain, samples, options);
@@ -288,13 +291,13 @@ TEST(FitNetwork, noise_elsewhere_does_not_keep_the_surface_from_detail_that_is_n
     Index count = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const Vec3& p = samples.positions[i];
-        if (std::acos(std::clamp(p.z / norm(p), -1.0, 1.0)) > 0.3)
+        if (from_pole(p) > width)
             continue;
         const double miss = norm(f.result.surface.position(f.samples.domain[i]) - p);
         sum += miss * miss;
         ++count;
     }
-    EXPECT_LT(std::sqrt(sum / count), 1.3 * noise);
+    EXPECT_LT(std::sqrt(sum / count), 1.25 * noise); // 1.5 with one fairness for all quads
 }
 
 TEST(FitNetwork, noise_below_what_the_surface_can_meet_changes_nothing)
