@@ -125,7 +125,9 @@ Result<std::string> make_step(const std::vector<Brep>& breps, const WriteOptions
         // Names go in as marks: Open CASCADE numbers products and knows ASCII alone.
         names.push_back(breps[i].name.empty() ? "solid " + std::to_string(i + 1) : breps[i].name);
         const int before = model->NbEntities();
-        if (writer.Transfer(*shape, STEPControl_AsIs) != IFSelect_RetDone)
+        // No graph of references: it is made anew of all objects at each one, and nothing asks it.
+        const bool graph = false;
+        if (writer.Transfer(*shape, STEPControl_AsIs, graph) != IFSelect_RetDone)
             return step_failed("object " + std::to_string(i) + " was not transferred");
         name_items(model, before + 1, step_name_mark(i + 1));
     }

@@ -22,8 +22,8 @@ constexpr double patches_per_handle = 16.0;
 // Curvature is measured at this fraction of the box diagonal.
 constexpr double curvature_scale = 0.015;
 // Carrier edges are at most this part of the width of a patch, so that a patch has enough faces for
-// a smooth map: about forty.
-constexpr double carrier_resolution = 0.3;
+// a smooth map: thirty and more.
+constexpr double carrier_resolution = 0.4;
 // Refining a carrier adds at most this many vertices per face, plus the constant: a sliver whose
 // area is nothing beside its length would ask for any number.
 constexpr std::size_t max_refinement_factor = 4;
