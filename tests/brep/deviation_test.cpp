@@ -19,7 +19,7 @@ TEST(Deviation, is_zero_for_a_cube_against_its_own_flat_patches)
     ASSERT_TRUE(d.ok());
     EXPECT_LT(d->max(), 1e-14);
     EXPECT_LT(d->rms(), 1e-14);
-    EXPECT_GE(d->source_to_surface.samples, 10000u);
+    EXPECT_GE(d->source_to_surface.samples, 4000u);
     EXPECT_GT(d->surface_to_source.samples, 1000u);
 }
 
@@ -103,7 +103,7 @@ TEST(Deviation, of_a_sphere_in_its_cube_is_known_at_corners_and_centres)
     ASSERT_TRUE(d.ok());
     EXPECT_NEAR(d->surface_to_source.max, std::sqrt(3.0) - 1.0, 1e-3);
     EXPECT_LE(d->source_to_surface.max, 1.0 - 1.0 / std::sqrt(3.0) + 1e-14);
-    EXPECT_GE(d->source_to_surface.max, 1.0 - 1.0 / std::sqrt(3.0) - 5e-3);
+    EXPECT_GE(d->source_to_surface.max, 1.0 - 1.0 / std::sqrt(3.0) - 1e-2);
 }
 
 TEST(Deviation, stops_when_cancelled)
