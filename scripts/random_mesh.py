@@ -11,6 +11,7 @@ taken back or made weaker; what remains is stated by the command as a warning.
 
 from dataclasses import dataclass, field
 from itertools import permutations
+from math import sqrt
 
 import numpy as np
 
@@ -371,13 +372,25 @@ def displaced(mesh, rng, strength, along):
     return Mesh(mesh.vertices + strength * nearest_edge(mesh) * move, mesh.triangles, mesh.recipe)
 
 
+def minus(a, b):
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+def dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
 def collapsed(mesh, rng, faces, turn_limit):
     """Random edge collapses down to `faces` triangles.
 
     The surface stays manifold (link condition); no face may turn its normal by more than an angle
     of cosine `turn_limit`. Triangles of any shape are welcome.
     """
-    p = [np.array(v) for v in mesh.vertices]
+    p = [tuple(v) for v in mesh.vertices.tolist()]  # numpy is slow for single triangles
     tri = [list(t) for t in mesh.triangles.tolist()]
     around = [set() for _ in p]
     for f, t in enumerate(tri):
@@ -400,17 +413,17 @@ def collapsed(mesh, rng, faces, turn_limit):
         gone = around[a] & around[b]
         if len(gone) != 2:
             continue
-        s = rng.choice((0.0, 1.0, rng.uniform()))
-        target = (1.0 - s) * p[a] + s * p[b]
+        s = float(rng.choice((0.0, 1.0, rng.uniform())))
+        target = tuple((1.0 - s) * x + s * y for x, y in zip(p[a], p[b]))
         fine = True
         for f in (around[a] | around[b]) - gone:
             old = [p[v] for v in tri[f]]
             new = [target if v in (a, b) else p[v] for v in tri[f]]
-            n0 = np.cross(old[1] - old[0], old[2] - old[0])
-            n1 = np.cross(new[1] - new[0], new[2] - new[0])
-            size = np.sqrt((n0 @ n0) * (n1 @ n1))
-            longest = max((new[0] - new[1]) @ (new[0] - new[1]), (new[1] - new[2]) @ (new[1] - new[2]))
-            if n0 @ n1 <= turn_limit * size or n1 @ n1 <= (1e-4 * longest) ** 2:
+            n0 = cross(minus(old[1], old[0]), minus(old[2], old[0]))
+            n1 = cross(minus(new[1], new[0]), minus(new[2], new[0]))
+            size = sqrt(dot(n0, n0) * dot(n1, n1))
+            longest = max(dot(d, d) for d in (minus(new[0], new[1]), minus(new[1], new[2])))
+            if dot(n0, n1) <= turn_limit * size or dot(n1, n1) <= (1e-4 * longest) ** 2:
                 fine = False
                 break
         if not fine:
