@@ -36,6 +36,7 @@ class Run:
     code: int = 0  # Exit code; negative: the signal that ended it.
     hang: bool = False
     seconds: float = 0.0  # Of processor time.
+    clock: float = 0.0  # Seconds on the clock.
     report: dict = field(default_factory=dict)
     stderr: str = ""
     left: list = field(default_factory=list)  # Names of the files in the folder of the outputs.
@@ -78,28 +79,31 @@ def _limit(seconds):
     resource.setrlimit(resource.RLIMIT_CPU, (ceil(seconds), ceil(seconds) + 1))
 
 
-def execute(command, seconds):
+def execute(command, seconds, clock=None):
     """Runs a command whose JSON comes on standard output, for at most `seconds` of processor time.
 
     Processor time, so that other work on the machine changes no verdict; a command that sleeps is
-    stopped after WAITING times as long.
+    stopped after WAITING times as long on the clock, or after `clock` seconds.
     """
+    clock = clock or WAITING * seconds
+    begin = time.monotonic()
     run = Run([str(c) for c in command])
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         process = subprocess.Popen(
             run.command, stdout=out, stderr=err, preexec_fn=lambda: _limit(seconds)
         )
-        end = time.monotonic() + WAITING * seconds
+        end = begin + clock
         pid = 0
         while pid == 0:
             pid, status, usage = os.wait4(process.pid, os.WNOHANG)
             if pid == 0:
                 if time.monotonic() > end:
                     os.kill(process.pid, signal.SIGKILL)
-                    end += WAITING * seconds
+                    end += clock
                 time.sleep(0.02)
         run.code = process.returncode = os.waitstatus_to_exitcode(status)
         run.seconds = usage.ru_utime + usage.ru_stime
+        run.clock = time.monotonic() - begin
         run.hang = run.code in (-signal.SIGXCPU, -signal.SIGKILL)
         out.seek(0)
         err.seek(0)
@@ -112,11 +116,12 @@ def execute(command, seconds):
     return run
 
 
-def convert(binary, mesh, seconds, threads=1, output="result.3dm", keep=None):
+def convert(binary, mesh, seconds, threads=1, output="result.3dm", keep=None, clock=None):
     """Converts `mesh` in an empty folder; with `keep` the output is moved there."""
     with tempfile.TemporaryDirectory(prefix="bot2nurbs_") as folder:
         target = Path(folder) / output
-        run = execute([binary, mesh, target, "--json", "-", "--threads", str(threads)], seconds)
+        command = [binary, mesh, target, "--json", "-", "--threads", str(threads)]
+        run = execute(command, seconds, clock)
         run.left = sorted(p.name for p in Path(folder).iterdir())
         if keep and target.exists():
             Path(keep).write_bytes(target.read_bytes())
@@ -145,7 +150,7 @@ def faults(run, genera=None, output="result.3dm"):
     `genera`: of the components, where they are known.
     """
     if run.hang:
-        return [f"no end after {run.seconds:.0f} s"]
+        return [f"no end after {run.seconds:.0f} s of processor time, {run.clock:.0f} s on the clock"]
     if run.code < 0:
         return [f"ended by signal {signal.Signals(-run.code).name}"]
     found = []

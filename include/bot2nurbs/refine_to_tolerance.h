@@ -96,11 +96,13 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
                                          const ToleranceOptions& options, const PointData* points,
                                          Context& context);
 
-//! A layout to start from: the coarsest of a few, each a share finer than the last, of whose
-//! patches nine tenths are within the tolerance; else the finest within max_patches, or the last
-//! before more patches gained nothing. Cutting patches of a layout that is too coarse nearly
-//! everywhere would copy their shapes, and need more of them. `layout.patches` is not used. Errors:
-//! bad_option; those of build_layout() and of refine_to_tolerance().
+//! A layout to start from. Of a few, each finer than the last: the first that is within the
+//! tolerance, or as near as noise lets it, else of those of whose patches nine tenths are the one
+//! that is expected to end with the fewest; else the nearest within max_patches, or before more
+//! patches gained nothing. Where no layout has so few, the first.
+//! Cutting patches of a layout that is too coarse nearly everywhere would copy their shapes, and
+//! need more of them. `layout.patches` is not used. Errors: bad_option; those of build_layout() and
+//! of refine_to_tolerance().
 Result<LayoutResult> layout_for_tolerance(const ManifoldMesh& source, LayoutOptions layout,
                                           const ToleranceOptions& options, const PointData* points,
                                           Context& context);

@@ -1,28 +1,13 @@
 // SPDX-License-Identifier: MIT
+#include "refine/layout_search.h"
 #include "refine/trial.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 namespace bot2nurbs {
 
 namespace {
-
-// Where the search starts: a few more than the six of a cube, as no limb gets a patch of its own
-// below that.
-constexpr Index first_patches = 24;
-// Share of the patches that should be within the tolerance before any is cut. With fewer, closing
-// the marks would cut nearly all patches; with all of them, the worst patch would set the size of
-// every other.
-constexpr double wanted_share = 0.9;
-// The distance of bicubic patches falls with the power 2 of their number where the source is
-// smooth, with less where it is not: the measured 1.5 of real models.
-constexpr double patches_power = 1.0 / 1.5;
-// Growth from one layout to the next: least, so that few layouts are tried, and most, as the
-// prediction is rough.
-constexpr double least_growth = 1.4, most_growth = 4.0;
 
 // The distance that a share of the patches are within.
 double distance_of_share(const Trial& trial, double share)
@@ -47,26 +32,35 @@ Result<LayoutResult> layout_for_tolerance(const ManifoldMesh& source, LayoutOpti
         return *error;
     const FitTarget target(source, points, options.tolerance);
     std::optional<LayoutResult> best;
-    double best_ratio = std::numeric_limits<double>::infinity();
-    for (double patches = first_patches;;) {
-        layout.patches = static_cast<Index>(patches);
+    // One that cannot be made, or fitted, is no loss where there is another.
+    const auto without = [&best](const Error& error) -> Result<LayoutResult> {
+        if (best && error.code == ErrorCode::layout_failed)
+            return std::move(*best);
+        return error;
+    };
+    for (LayoutSearch search(options.max_patches);;) {
+        layout.patches = search.patches();
         Result<LayoutResult> made = build_layout(source, layout, context);
         if (!made)
-            return made;
-        if (best && made->domain.complex.quad_count() > options.max_patches)
-            return std::move(*best);
-        const Result<Trial> trial = make_trial(target, made->domain, options, context);
+            return without(made.error());
+        const Index count = made->domain.complex.quad_count();
+        if (count > options.max_patches)
+            return best ? std::move(*best) : std::move(*made);
+        Result<Trial> trial = make_trial(target, made->domain, options, context);
         if (!trial)
-            return trial.error();
-        const double ratio = distance_of_share(*trial, wanted_share) / target.limit;
+            return without(trial.error());
+        const double ratio = distance_of_share(*trial, LayoutSearch::wanted_share) / target.limit;
+        // Samples do not see what bulges between them.
         if (ratio <= 1.0)
+            if (Status failed = prove_trial(target, *trial, context))
+                return *failed;
+        if (trial->within || trial->beyond() == 0)
             return made;
-        // More patches gain nothing: most of them have details, or facets, of the source to reach.
-        if (ratio >= best_ratio)
+        const auto verdict = search.look_at(count, trial->beyond(), ratio);
+        if (verdict.best)
+            best = std::move(*made);
+        if (verdict.done)
             return std::move(*best);
-        best_ratio = ratio;
-        patches *= std::clamp(std::pow(ratio, patches_power), least_growth, most_growth);
-        best = std::move(*made);
     }
 }
 

@@ -4,6 +4,7 @@
 #include "bot2nurbs/refine_domain.h"
 #include "layout/straighten_domain.h"
 #include "refine/choose_marks.h"
+#include "refine/progress.h"
 #include "refine/trial.h"
 
 #include <algorithm>
@@ -16,13 +17,12 @@ namespace bot2nurbs {
 
 namespace {
 
-// Rounds without progress before refinement is given up: a place where a crease of the source is
-// rounded may get worse before it gets better. While other rows are left to try, fewer.
+// Rounds without progress before refinement may be given up, see stalled(): a place where a crease
+// of the source is rounded may get worse before it gets better. While other rows are left to try,
+// fewer.
 constexpr std::size_t patience = 3, tangent_patience = 2;
 // Of the edges of a domain after a cut. A second pass makes no fewer patches.
 constexpr int straightening_passes = 1;
-// Progress is a largest distance lower by this share, or as many patches fewer known to exceed it.
-constexpr double least_progress = 0.1;
 
 double now()
 {
@@ -42,26 +42,6 @@ RefinementRound describe(const Trial& trial, double seconds)
     round.beyond = trial.beyond();
     round.seconds = seconds;
     return round;
-}
-
-// Whether the last rounds have come nearer to the tolerance than all before them, from `first` on.
-bool stalled(const std::vector<RefinementRound>& rounds, std::size_t first, std::size_t waits)
-{
-    if (rounds.size() - first <= waits)
-        return false;
-    const auto begin = rounds.begin() + static_cast<std::ptrdiff_t>(first);
-    const auto last = rounds.end() - static_cast<std::ptrdiff_t>(waits);
-    const auto falls = [&](auto value) {
-        const auto less = [&](const RefinementRound& a, const RefinementRound& b) {
-            return value(a) < value(b);
-        };
-        const double before = value(*std::min_element(begin, last, less));
-        return value(*std::min_element(last, rounds.end(), less)) <=
-                   (1.0 - least_progress) * before &&
-               before > 0.0;
-    };
-    return !falls([](const RefinementRound& r) { return r.distance.lower; }) &&
-           !falls([](const RefinementRound& r) { return double(r.exceeding); });
 }
 
 // Whether the last round is nearer to the tolerance than the best one so far.
