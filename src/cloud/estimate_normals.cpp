@@ -72,9 +72,11 @@ Result<SurfaceEstimate> estimate_normals(const std::vector<Vec3>& points, Contex
     const double radius = radius_over_noise * scale->noise;
     if (!for_each_chunk(context, n, points_per_chunk, [&](std::size_t begin, std::size_t end) {
             std::vector<PointTree::Neighbor> found;
-            for (std::size_t i = begin; i < end; ++i) {
+            for (std::size_t place = begin; place < end; ++place) {
+                const Index i = tree->order()[place];
                 std::size_t count = least_neighbors + 1;
-                tree->nearest(points[i], count, found);
+                found.assign(1, {i, 0.0});
+                found.insert(found.end(), graph->of(i), graph->of(i) + graph->k);
                 // Doubled until the radius is reached, then cut to it.
                 while (found.back().distance2 < radius * radius && count < most_neighbors &&
                        found.size() == count) {

@@ -216,7 +216,8 @@ Result<std::vector<char>> contradicted_normals(const std::vector<Vec3>& points,
     if (!for_each_chunk(
             context, points.size(), points_per_chunk, [&](std::size_t begin, std::size_t end) {
                 std::vector<PointTree::Neighbor> found;
-                for (std::size_t i = begin; i < end; ++i) {
+                for (std::size_t place = begin; place < end; ++place) {
+                    const std::size_t i = tree->order()[place];
                     const Vec3 n = normalized(normals[i]);
                     tree->nearest(points[i], voters + 1, found);
                     int against = 0, all = 0;

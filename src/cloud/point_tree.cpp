@@ -136,6 +136,11 @@ std::size_t PointTree::size() const
     return tree_->points.positions.size();
 }
 
+const std::vector<Index>& PointTree::order() const
+{
+    return tree_->index.vAcc;
+}
+
 double NeighborGraph::radius(std::size_t i) const
 {
     return std::sqrt(of(i)[k - 1].distance2);
@@ -150,7 +155,8 @@ Result<NeighborGraph> find_neighbors(const PointTree& tree, const std::vector<Ve
     if (!for_each_chunk(
             context, points.size(), points_per_chunk, [&](std::size_t begin, std::size_t end) {
                 std::vector<PointTree::Neighbor> found;
-                for (std::size_t i = begin; i < end; ++i) {
+                for (std::size_t place = begin; place < end; ++place) {
+                    const std::size_t i = tree.order()[place];
                     tree.nearest(points[i], graph.k + 1, found);
                     // The point itself need not be the first of several at one place.
                     auto own =

@@ -29,6 +29,9 @@ public:
     void within(const Vec3& p, double radius, std::vector<Neighbor>& found) const;
     Neighbor nearest(const Vec3& p) const;
     std::size_t size() const;
+    //! All points, in an order in which neighbours are near: queries in it find most of what they
+    //! read in the cache.
+    const std::vector<Index>& order() const;
 
 private:
     struct Tree;
