@@ -99,10 +99,9 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
 //! A layout to start from. Of a few, each finer than the last: the first that is within the
 //! tolerance, or as near as noise lets it, else of those of whose patches nine tenths are the one
 //! that is expected to end with the fewest; else the nearest within max_patches, or before more
-//! patches gained nothing. Where no layout has so few, the first.
-//! Cutting patches of a layout that is too coarse nearly everywhere would copy their shapes, and
-//! need more of them. `layout.patches` is not used. Errors: bad_option; those of build_layout() and
-//! of refine_to_tolerance().
+//! patches gained nothing. Where no layout has so few, the first. Cutting patches of a layout that
+//! is too coarse nearly everywhere would copy their shapes, and need more of them. `layout.patches`
+//! is not used. Errors: bad_option; those of build_layout() and of refine_to_tolerance().
 Result<LayoutResult> layout_for_tolerance(const ManifoldMesh& source, LayoutOptions layout,
                                           const ToleranceOptions& options, const PointData* points,
                                           Context& context);

@@ -138,7 +138,7 @@ std::size_t PointTree::size() const
 
 const std::vector<Index>& PointTree::order() const
 {
-    return tree_->index.vAcc;
+    return tree_->index.vAcc; // public in nanoflann 1.4, of Debian 12
 }
 
 double NeighborGraph::radius(std::size_t i) const

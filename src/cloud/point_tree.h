@@ -48,7 +48,7 @@ struct NeighborGraph {
     double radius(std::size_t i) const; //!< Distance to the farthest of the k.
 };
 
-//! Errors: cancelled. \pre at least two points
+//! Errors: cancelled. \pre at least two points, those of the tree
 Result<NeighborGraph> find_neighbors(const PointTree& tree, const std::vector<Vec3>& points,
                                      std::size_t k, Context& context);
 

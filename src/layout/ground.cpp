@@ -22,8 +22,9 @@ constexpr double patches_per_handle = 16.0;
 // Curvature is measured at this fraction of the box diagonal.
 constexpr double curvature_scale = 0.015;
 // Carrier edges are at most this part of the width of a patch, so that a patch has enough faces for
-// a smooth map: some thirty, for halved edges are shorter than they must be. Layouts of 0.3, with
-// some seventy, took twice the time and were no better (51 closed models).
+// a smooth map: some thirty, for halved edges are shorter than they must be. With 0.3 layouts of
+// coarse meshes take twice the time; stretch and errors in scripts/corpus.py are the same on the
+// whole.
 constexpr double carrier_resolution = 0.4;
 // Refining a carrier adds at most this many vertices per face, plus the constant: a sliver whose
 // area is nothing beside its length would ask for any number.

@@ -57,7 +57,7 @@ Result<LayoutResult> layout_for_tolerance(const ManifoldMesh& source, LayoutOpti
         if (trial->within || trial->beyond() == 0)
             return made;
         const auto verdict = search.look_at(count, trial->beyond(), ratio);
-        if (verdict.best)
+        if (verdict.best || !best)
             best = std::move(*made);
         if (verdict.done)
             return std::move(*best);

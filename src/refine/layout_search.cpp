@@ -17,8 +17,9 @@ constexpr double least_growth = 1.4, most_growth = 4.0;
 // So many times in a row finer layouts may be no nearer to the source. Then most patches have
 // details, or facets, of it to reach, and more of them gain nothing.
 constexpr int most_steps_in_vain = 2;
-// Patches that one beyond the tolerance adds: closing the marks makes 13 to 20 when it is cut, and
-// its pieces are often cut again.
+// Patches that one beyond the tolerance adds in the end, about: closing the marks makes 13 to 20
+// when it is cut, and its pieces are often cut again. Where several are cut together each adds
+// fewer.
 constexpr double patches_per_cut = 30.0;
 // Where few patches are left to cut, layouts that are this much finer are tried: one may have none
 // to cut.
@@ -27,30 +28,31 @@ constexpr int most_small_steps = 4;
 
 } // namespace
 
-//! Topology and creases may keep layouts far above what is asked for: the next is to be another.
-void LayoutSearch::grow(Index count, double growth)
+bool LayoutSearch::grow(Index count, double growth)
 {
-    at_limit_ = patches_ >= most_;
+    const bool at_limit = patches_ >= most_;
+    // Topology and creases may keep layouts far above what is asked for: the next is to be another.
     patches_ = growth * (count > 2.0 * patches_ ? count : patches_);
+    return at_limit;
 }
 
-LayoutSearch::Verdict LayoutSearch::look_at(Index count, Index exceeding, double ratio)
+LayoutSearch::Verdict LayoutSearch::look_at(Index count, Index beyond, double ratio)
 {
     if (ratio > 1.0 && small_steps_ == 0) {
         const bool nearer = ratio < best_ratio_;
         const double wanted = std::pow(ratio, patches_power);
-        grow(count, nearer ? std::clamp(wanted, least_growth, most_growth) : least_growth);
+        const bool at_limit =
+            grow(count, nearer ? std::clamp(wanted, least_growth, most_growth) : least_growth);
         best_ratio_ = std::min(best_ratio_, ratio);
         steps_in_vain_ = nearer ? 0 : steps_in_vain_ + 1;
-        return {nearer, at_limit_ || steps_in_vain_ == most_steps_in_vain};
+        return {nearer, at_limit || steps_in_vain_ == most_steps_in_vain};
     }
-    const double expected = count + patches_per_cut * exceeding;
+    const double expected = count + patches_per_cut * beyond;
     const bool best = ratio <= 1.0 && expected < fewest_;
     if (best)
         fewest_ = expected;
-    grow(count, small_growth);
-    return {best,
-            at_limit_ || ++small_steps_ > most_small_steps || small_growth * count >= fewest_};
+    const bool at_limit = grow(count, small_growth);
+    return {best, at_limit || ++small_steps_ > most_small_steps || small_growth * count >= fewest_};
 }
 
 } // namespace bot2nurbs

@@ -26,16 +26,16 @@ public:
     //! Number of patches to ask for next.
     Index patches() const { return static_cast<Index>(std::min(patches_, most_)); }
     //! \param count number of patches of the layout that was made for patches()
-    //! \param exceeding number of those that are beyond the tolerance, at least one
+    //! \param beyond number of those that are not known to be within the tolerance, at least one
     //! \param ratio the distance that the wanted share of them are within, over the tolerance
-    Verdict look_at(Index count, Index exceeding, double ratio);
+    Verdict look_at(Index count, Index beyond, double ratio);
 
 private:
-    void grow(Index count, double growth);
+    //! \return whether the limit has been asked for already.
+    bool grow(Index count, double growth);
 
     double most_;
     double patches_ = 24; //!< A few more than the six of a cube: no limb gets its own below that.
-    bool at_limit_ = false;
     double best_ratio_ = std::numeric_limits<double>::infinity();
     double fewest_ = std::numeric_limits<double>::infinity(); //!< That the best may end with.
     int steps_in_vain_ = 0, small_steps_ = 0;

@@ -44,15 +44,17 @@ TEST(LayoutSearch, where_few_patches_are_left_the_one_that_may_end_with_the_fewe
     EXPECT_TRUE(first.best);
     EXPECT_FALSE(first.done);
     EXPECT_EQ(search.patches(), 30u);
-    const auto more_left = search.look_at(50, 4, 0.7);
-    EXPECT_FALSE(more_left.best);
-    EXPECT_FALSE(more_left.done);
+    const auto many_left = search.look_at(55, 1, 1.2); // More than a tenth of them is beyond.
+    EXPECT_FALSE(many_left.best);
+    EXPECT_FALSE(many_left.done);
     // 60 + 30, and any that is finer by a quarter has 75.
-    EXPECT_FALSE(search.look_at(55, 6, 1.2).best); // Too many are left, however few patches it has.
     const auto fewer_left = search.look_at(60, 1, 0.6);
     EXPECT_TRUE(fewer_left.best);
     EXPECT_FALSE(fewer_left.done);
-    EXPECT_TRUE(search.look_at(78, 2, 0.5).done);
+    // 78 + 60, and any that is finer by a quarter has more than 90.
+    const auto more_left = search.look_at(78, 2, 0.5);
+    EXPECT_FALSE(more_left.best);
+    EXPECT_TRUE(more_left.done);
 }
 
 TEST(LayoutSearch, finer_layouts_are_tried_four_times_at_most)
@@ -73,7 +75,7 @@ TEST(LayoutSearch, layouts_that_topology_keeps_above_what_is_asked_for_are_not_m
 TEST(LayoutSearch, no_more_patches_than_the_limit_are_asked_for_and_only_once)
 {
     LayoutSearch search(60);
-    EXPECT_FALSE(search.look_at(30, 20, 8.0).done);
+    EXPECT_FALSE(search.look_at(30, 20, 8.0).done); // 96 by the distance
     EXPECT_EQ(search.patches(), 60u);
     EXPECT_TRUE(search.look_at(60, 20, 4.0).done);
 }

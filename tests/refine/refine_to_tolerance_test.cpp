@@ -6,6 +6,7 @@
 #include "domain/domain_paths.h"
 #include "hand_domains.h"
 #include "refine/point_trial.h"
+#include "refine/trial.h"
 
 #include <gtest/gtest.h>
 
@@ -318,14 +319,20 @@ TEST(RefineToTolerance, it_can_be_cancelled)
     EXPECT_EQ(fit.error().code, ErrorCode::cancelled);
 }
 
-TEST(LayoutForTolerance, a_smaller_tolerance_starts_from_more_patches_up_to_the_limit)
+//! A sphere with waves that are 2 pi / frequency long.
+ManifoldMesh wavy_ball(double frequency)
 {
-    // A sphere with bumps, which take more patches.
     const HandDomain sphere = test::sphere_cube(0, 24);
     std::vector<Vec3> positions = sphere.mesh.positions();
     for (Vec3& p : positions)
-        p *= 1.0 + 0.1 * std::sin(20.0 * p.x) * std::sin(20.0 * p.y) * std::sin(20.0 * p.z);
-    const ManifoldMesh bumpy = *ManifoldMesh::build(std::move(positions), sphere.mesh.triangles());
+        p *= 1.0 + 0.1 * std::sin(frequency * p.x) * std::sin(frequency * p.y) *
+                       std::sin(frequency * p.z);
+    return *ManifoldMesh::build(std::move(positions), sphere.mesh.triangles());
+}
+
+TEST(LayoutForTolerance, a_smaller_tolerance_starts_from_more_patches_up_to_the_limit)
+{
+    const ManifoldMesh bumpy = wavy_ball(20.0);
     const auto patches = [&](double tolerance, Index limit) {
         ToleranceOptions options = options_for(tolerance);
         options.max_patches = limit;
@@ -335,9 +342,45 @@ TEST(LayoutForTolerance, a_smaller_tolerance_starts_from_more_patches_up_to_the_
         EXPECT_TRUE(layout);
         return layout ? layout->domain.complex.quad_count() : 0;
     };
-    const Index few = patches(0.5, 5000), more = patches(1e-2, 5000);
+    const Index few = patches(0.5, 5000), more = patches(1e-2, 200);
     EXPECT_LT(few, more);
-    EXPECT_LE(patches(1e-2, few), few);
+    for (Index limit = few; limit < few + 9; limit += 4)
+        EXPECT_LE(patches(1e-2, limit), limit);
+    EXPECT_GT(patches(1e-2, 2), 2u); // No layout has so few.
+}
+
+TEST(LayoutForTolerance, a_layout_that_is_within_at_its_samples_alone_is_not_the_start)
+{
+    const ManifoldMesh ball = wavy_ball(4.0);
+    Context context;
+    LayoutOptions coarse;
+    coarse.patches = 24;
+    const Result<LayoutResult> first = build_layout(ball, coarse, context);
+    ASSERT_TRUE(first);
+    // A tolerance between what the samples show of the coarsest layout and what is true.
+    double tolerance = 0.05;
+    bool missed = false;
+    for (int i = 0; i < 60 && !missed; ++i) {
+        const FitTarget target(ball, nullptr, tolerance);
+        Result<Trial> trial = make_trial(target, first->domain, options_for(tolerance), context);
+        ASSERT_TRUE(trial);
+        if (trial->exceeding() == 0) {
+            ASSERT_FALSE(prove_trial(target, *trial, context));
+            missed = trial->exceeding() > 0;
+        }
+        if (!missed) // From twice what is known of it downwards.
+            tolerance = std::min(0.97 * tolerance, 2.0 * trial->distance());
+    }
+    ASSERT_TRUE(missed);
+    const Result<LayoutResult> start =
+        layout_for_tolerance(ball, {}, options_for(tolerance), nullptr, context);
+    ASSERT_TRUE(start);
+    EXPECT_GT(start->domain.complex.quad_count(), first->domain.complex.quad_count());
+    const Result<ToleranceFit> fit =
+        refine_to_tolerance(ball, start->domain, options_for(tolerance), nullptr, context);
+    ASSERT_TRUE(fit);
+    EXPECT_EQ(fit->termination, RefinementEnd::tolerance_met);
+    EXPECT_EQ(fit->rounds.size(), 1u);
 }
 
 } // namespace
