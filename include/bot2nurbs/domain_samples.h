@@ -16,7 +16,7 @@ struct SampleOptions {
     Index per_side = 12;
     //! Source vertices of a quad that become samples too, so that detail finer than the grid is
     //! seen; beyond this number they are thinned evenly. 0: none.
-    Index max_vertices = 288;
+    Index max_vertices = 144;
     //! Dihedral angle in degrees, 0 to 180: across an edge that turns more, normals are not
     //! averaged.
     double smooth_angle = 40.0;

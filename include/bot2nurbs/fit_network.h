@@ -34,7 +34,7 @@ struct FitOptions {
     //! Standard deviation, in units of the samples, that robust fits assume at least: what lies
     //! nearer than about this is not taken for an outlier, however well other samples are met.
     double least_deviation = 0.0;
-    double stall = 0.02; //!< Stop when a round lowers the rms error by less than this share.
+    double stall = 0.04; //!< Stop when a round lowers the rms error by less than this share.
     //! Largest condition of the scaled normal matrix that is trusted (half the digits of a double
     //! are left for the solution at 1e8); above it the rows are solved by QR.
     double condition_limit = 1e10;

@@ -15,9 +15,9 @@ namespace bot2nurbs {
 namespace {
 
 //! Places measured per direction, for a Bezier piece, at least and at most. A closest point costs
-//! one or two microseconds. Root mean squares need no more; the largest distance is for
+//! some microseconds. Root mean squares need no more; the largest distance is for
 //! bound_hausdorff() to find.
-constexpr std::size_t face_samples_per_piece = 10, least_face_samples = 4000,
+constexpr std::size_t face_samples_per_piece = 6, least_face_samples = 4000,
                       most_face_samples = 30000;
 constexpr std::size_t surface_samples_per_piece = 9, least_surface_samples = 2500,
                       most_surface_samples = 25000;

@@ -320,7 +320,7 @@ Status FitLoop::find_feet(State& state) const
 }
 
 NormalSystem::Solution FitLoop::solve(const State& state, const std::vector<FitRow>& rows,
-                                      double mu)
+                                      double mu, const std::vector<Vec3>* start)
 {
     if (context_.cancelled())
         return {}; // some rows may not have been made
@@ -331,6 +331,7 @@ NormalSystem::Solution FitLoop::solve(const State& state, const std::vector<FitR
     problem.bezier = &state.surface.bezier();
     problem.fairness = &fairness_;
     problem.mu = mu;
+    problem.start = start;
     NormalSystem::Solution solution = system_.solve(problem, options_.condition_limit, context_);
     if (!solution.ok && mu >= 1.0 && !context_.cancelled()) {
         solution = solve_stacked_rows(reduced_, problem, context_);
@@ -405,8 +406,11 @@ Status FitLoop::next_round(State& state, double& mu, bool& stuck)
 {
     scale_fairness(fairness_decay, within_noise(state));
     const std::vector<double> factors = distance_factors(state, mu);
+    NormalSystem::Solution solution;
+    bool answered = false;
     for (int answers = 0;;) {
-        NormalSystem::Solution solution = solve(state, rows_at(state, factors), mu);
+        solution = solve(state, rows_at(state, factors), mu, answered ? &solution.move : nullptr);
+        answered = false;
         if (context_.cancelled())
             return Context::cancelled_error("fit");
         if (!solution.ok && mu >= 1.0)
@@ -426,6 +430,7 @@ Status FitLoop::next_round(State& state, double& mu, bool& stuck)
                     floor_[q] = level_[q] =
                         std::max(floor_[q], std::min(options_.fairness, last_level_[q]));
                 apply_fairness();
+                answered = true;
                 continue;
             }
             for (double share = 1.0; share >= least_step; share *= 0.5) {

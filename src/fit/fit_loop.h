@@ -47,7 +47,9 @@ private:
     //! \return true in `stuck` when no step lowers the objective without new folds.
     Status next_round(State& state, double& mu, bool& stuck);
     //! Solves from `state` with the given rows. Falls back to QR where that is the answer.
-    NormalSystem::Solution solve(const State& state, const std::vector<FitRow>& rows, double mu);
+    //! `start`: see RoundProblem.
+    NormalSystem::Solution solve(const State& state, const std::vector<FitRow>& rows, double mu,
+                                 const std::vector<Vec3>* start = nullptr);
     //! The state after moving the unknowns, without feet.
     State moved(const State& state, const std::vector<Vec3>& move) const;
     //! Like `moved`, after shortening the move where it folds, as little as it takes.

@@ -35,6 +35,19 @@ double parameter(Index i)
     return (i / places.size() + places[i % places.size()]) / pieces_per_side;
 }
 
+//! Bernstein polynomials, and their derivatives, at the places on a piece.
+struct PlaceBasis {
+    std::array<Cubic, places.size()> value, slope;
+
+    PlaceBasis()
+    {
+        for (std::size_t k = 0; k < places.size(); ++k) {
+            value[k] = bernstein(places[k]);
+            slope[k] = bernstein_d(places[k]);
+        }
+    }
+};
+
 Index cell_at(double u, double v)
 {
     const auto along = [](double x) {
@@ -70,13 +83,13 @@ public:
     QuadPlaces(const SplineSurface& surface, Index quad, const FoldGuard::Source* source)
         : surface_(surface), quad_(quad)
     {
-        for (Index k = 0; k < places_per_quad; ++k)
-            place_[k] = at(parameter(k / side), parameter(k % side));
+        find_normals();
         find_sides_of_folds();
         for (Index k = 0; k < places_per_quad && source != nullptr; ++k) {
             const Place& p = place_[k];
             const FoldGuard::Source& there = source[cell_at(p.u, p.v)];
-            if (dot(p.normal, there.normal) < -there.slack * norm(p.normal))
+            const double along = dot(p.normal, there.normal);
+            if (along < 0.0 && along < -there.slack * norm(p.normal))
                 sign_[k] = -1;
         }
     }
@@ -107,9 +120,38 @@ private:
         const SurfacePoint s = surface_.evaluate({quad_, u, v});
         return {u, v, cross(s.du, s.dv)};
     }
-    static bool opposed(const Place& a, const Place& b) { return dot(a.normal, b.normal) < 0.0; }
-    bool fold_between(Place a, Place b) const
+    void find_normals()
     {
+        static const PlaceBasis basis;
+        constexpr Index per_piece = places.size();
+        for (Index i = 0; i < side; ++i) {
+            const Cubic &value = basis.value[i % per_piece], &slope = basis.slope[i % per_piece];
+            // Coefficients of the line of constant u, and of the derivative across it.
+            std::array<Vec3, SplineNetwork::grid> line{}, across{};
+            for (Index a = 0; a < 4; ++a)
+                for (Index j = 0; j < SplineNetwork::grid; ++j) {
+                    const Vec3& c = surface_.bezier(quad_, 3 * (i / per_piece) + a, j);
+                    line[j] += value[a] * c;
+                    across[j] += slope[a] * c;
+                }
+            for (Index j = 0; j < side; ++j) {
+                const Index first = 3 * (j / per_piece);
+                Vec3 du, dv;
+                for (Index a = 0; a < 4; ++a) {
+                    du += basis.value[j % per_piece][a] * across[first + a];
+                    dv += basis.slope[j % per_piece][a] * line[first + a];
+                }
+                place_[side * i + j] = {parameter(i), parameter(j),
+                                        double(pieces_per_side * pieces_per_side) * cross(du, dv)};
+            }
+        }
+    }
+    static bool opposed(const Place& a, const Place& b) { return dot(a.normal, b.normal) < 0.0; }
+    bool fold_between(const Place& from, const Place& to) const
+    {
+        if (!opposed(from, to))
+            return false;
+        Place a = from, b = to;
         for (int i = 0; i < halvings && opposed(a, b); ++i) {
             const Place middle = at(0.5 * (a.u + b.u), 0.5 * (a.v + b.v));
             // Opposed to neither: the surface has turned on the way, and the loop ends.

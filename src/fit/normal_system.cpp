@@ -14,9 +14,10 @@ namespace {
 //! Pieces assembled in parallel before their blocks are added to the matrix in piece order.
 constexpr Index batch_pieces = 512;
 constexpr Index chunk_pieces = 16;
-//! Conjugate gradients with the factor of an earlier round: at most as many iterations as cost half
-//! a factorisation, down to a residual far below what moving feet change about a round.
-constexpr GradientLimits with_old_factor{20, 1e-3};
+//! Conjugate gradients with the factor of nearly the same matrix: at most as many iterations as
+//! cost half a factorisation, down to an error that leaves other places in peace when all of the
+//! move is at one, such as a spike.
+constexpr GradientLimits with_other_factor{20, 1e-3};
 //! With the factor, in single precision, of the matrix itself: a few iterations make up for its
 //! rounding. If that takes more, the matrix needs a factor in double precision.
 constexpr GradientLimits with_own_factor{12, 1e-8};
@@ -128,7 +129,7 @@ NormalSystem::Solution NormalSystem::solve(const RoundProblem& problem, double c
     const bool coupled = problem.mu < 1.0;
     if (!assemble(problem, coupled, context))
         return {};
-    return coupled ? solve_coupled(condition_limit, context)
+    return coupled ? solve_coupled(problem.start, condition_limit, context)
                    : solve_decoupled(condition_limit, context);
 }
 
@@ -159,6 +160,15 @@ void NormalSystem::set_move(const Eigen::VectorXd& x, Solution& solution) const
     solution.ok = true;
 }
 
+Eigen::VectorXd NormalSystem::in_columns(const std::vector<Vec3>& move) const
+{
+    Eigen::VectorXd x(coupled_.size());
+    for (std::size_t i = 0; i < plan_.place.size(); ++i)
+        x.segment<3>(3 * static_cast<Eigen::Index>(plan_.place[i])) << move[i].x, move[i].y,
+            move[i].z;
+    return x;
+}
+
 Eigen::VectorXd NormalSystem::solve_by_scalar(const Eigen::VectorXd& right,
                                               const Context& context) const
 {
@@ -170,20 +180,23 @@ Eigen::VectorXd NormalSystem::solve_by_scalar(const Eigen::VectorXd& right,
     return x;
 }
 
-NormalSystem::Solution NormalSystem::solve_coupled(double condition_limit, const Context& context)
+NormalSystem::Solution NormalSystem::solve_coupled(const std::vector<Vec3>* start,
+                                                   double condition_limit, const Context& context)
 {
     const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(right_.data(), coupled_.size());
+    const Eigen::VectorXd first =
+        start != nullptr ? in_columns(*start) : Eigen::VectorXd::Zero(coupled_.size());
     const auto by_coupled = [&](const Eigen::VectorXd& r) { return coupled_.solve(r, context); };
     const auto by_scalar = [&](const Eigen::VectorXd& r) { return solve_by_scalar(r, context); };
     Solution solution;
     std::optional<Eigen::VectorXd> x;
-    if (coupled_.has_factor()) {
-        // Rounds differ little: a factor of an earlier one still preconditions well, and a few
-        // iterations cost much less than a factorisation.
-        x = conjugate_gradients(coupled_, right, with_old_factor, by_coupled, context);
+    // From round to round the point-distance part, and with it the matrix, changes too much for the
+    // factor of the last. In the first, rows are not far from those of the decoupled problem.
+    if (coupled_.has_factor() && start != nullptr) {
+        x = conjugate_gradients(coupled_, right, first, with_other_factor, by_coupled, context);
         solution.condition = coupled_condition_;
-    } else if (scalar_.has_factor()) {
-        x = conjugate_gradients(coupled_, right, with_old_factor, by_scalar, context);
+    } else if (!coupled_.has_factor() && scalar_.has_factor()) {
+        x = conjugate_gradients(coupled_, right, first, with_other_factor, by_scalar, context);
     }
     for (const auto precision : {ScaledFactor::Precision::single, ScaledFactor::Precision::full}) {
         if (x || context.cancelled())
@@ -195,7 +208,7 @@ NormalSystem::Solution NormalSystem::solve_coupled(double condition_limit, const
             coupled_.drop_factor();
             return solution;
         }
-        x = conjugate_gradients(coupled_, right, with_own_factor, by_coupled, context);
+        x = conjugate_gradients(coupled_, right, first, with_own_factor, by_coupled, context);
     }
     if (x && !context.cancelled())
         set_move(*x, solution);

@@ -43,6 +43,8 @@ struct RoundProblem {
     const std::vector<Vec3>* bezier = nullptr;     //!< 169 per quad; empty: all zero.
     const std::vector<double>* fairness = nullptr; //!< f_q.
     double mu = 1.0;                               //!< 1: point-distance rows.
+    //! Not null: the moves that solve the problem before this one, which differs in few quads.
+    const std::vector<Vec3>* start = nullptr;
 };
 
 //! The normal equations of a round, assembled piece by piece in Bezier coefficients and scattered
@@ -73,9 +75,11 @@ public:
 private:
     bool assemble(const RoundProblem& problem, bool coupled, const Context& context);
     Solution solve_decoupled(double condition_limit, const Context& context);
-    Solution solve_coupled(double condition_limit, const Context& context);
-    //! Values per unknown in the order of the columns, as moves.
+    Solution solve_coupled(const std::vector<Vec3>* start, double condition_limit,
+                           const Context& context);
+    //! Values per unknown in the order of the columns, as moves, and the other way round.
     void set_move(const Eigen::VectorXd& x, Solution& solution) const;
+    Eigen::VectorXd in_columns(const std::vector<Vec3>& move) const;
     //! Solves x, y and z each with the factor of the decoupled matrix.
     Eigen::VectorXd solve_by_scalar(const Eigen::VectorXd& right, const Context& context) const;
 

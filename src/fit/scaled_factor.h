@@ -63,23 +63,28 @@ private:
 //! When conjugate gradients stop.
 struct GradientLimits {
     int iterations = 0;
-    double tolerance = 0.0; //!< Share of the preconditioned residual that is left.
+    //! Of the error, as a share of the solution, both in the energy norm of the matrix, as far as
+    //! the preconditioner is its inverse.
+    double tolerance = 0.0;
 };
 
 //! Solves `matrix` (positive definite) by conjugate gradients, preconditioned by `precondition`,
-//! from zero. \return nothing when it broke down, would clearly take more iterations than allowed,
-//! or the context was cancelled.
+//! from x: zero, or nearly the solution. \return nothing when it broke down, would clearly take
+//! more iterations than allowed, or the context was cancelled.
 template <class Precondition> std::optional<Eigen::VectorXd>
-conjugate_gradients(const ScaledFactor& matrix, const Eigen::VectorXd& right,
+conjugate_gradients(const ScaledFactor& matrix, const Eigen::VectorXd& right, Eigen::VectorXd x,
                     const GradientLimits& limits, const Precondition& precondition,
                     const Context& context)
 {
     // Iterations after which the rate so far says whether the rest is worth while.
     constexpr int trial = 4;
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(right.size()), r = right, z = precondition(r), p = z;
+    const bool from_zero = x.isZero(0.0);
+    Eigen::VectorXd r = from_zero ? right : right - matrix.times(x, context);
+    Eigen::VectorXd z = precondition(r), p = z;
     double rz = r.dot(z);
-    const double start = rz, enough = limits.tolerance * limits.tolerance * rz;
-    if (rz == 0.0)
+    const double start = rz, solution = from_zero ? rz : right.dot(x);
+    const double enough = limits.tolerance * limits.tolerance * solution;
+    if (rz == 0.0 || (!from_zero && rz <= enough))
         return x;
     for (int i = 1; i <= limits.iterations && !context.cancelled(); ++i) {
         const Eigen::VectorXd q = matrix.times(p, context);

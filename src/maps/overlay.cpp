@@ -6,16 +6,6 @@
 
 namespace bot2nurbs {
 
-namespace {
-
-// A point on the rim of a mesh face while it is being cut: a corner or a border point.
-struct RimPoint {
-    Index id;     // Overlay vertex; invalid for a corner that is not one (yet).
-    Index corner; // 0, 1, 2, or invalid.
-};
-
-} // namespace
-
 std::array<double, 3> Overlay::bary_in(const ManifoldMesh& mesh, Index vertex, Index f) const
 {
     const Vertex& v = vertices[vertex];
@@ -143,9 +133,8 @@ void OverlayBuilder::split_same_side_edges(const Overlay& before, std::vector<In
     }
 }
 
-void OverlayBuilder::add_polygon(Overlay& overlay, Index face, const std::vector<Index>& polygon)
+void OverlayBuilder::add_polygon(Overlay& overlay, Index face, std::vector<Index>& p)
 {
-    std::vector<Index> p = polygon;
     int border = 0;
     for (const Index v : p)
         border += v < overlay.boundary_count;
@@ -196,7 +185,8 @@ void OverlayBuilder::add_polygon(Overlay& overlay, Index face, const std::vector
 bool OverlayBuilder::cut_face(Overlay& overlay, Index face, const Chord* chords, std::size_t count)
 {
     // The rim of the face, counter-clockwise: corners, and border points on each edge in order.
-    std::vector<RimPoint> rim;
+    auto& [rim, ends, done, path] = cut_;
+    rim.clear();
     for (Index k = 0; k < 3; ++k) {
         const Index v = mesh_.triangle(face)[k];
         const bool known = vertex_stamp_[v] == stamp_ && vertex_local_[v] < overlay.boundary_count;
@@ -216,28 +206,27 @@ bool OverlayBuilder::cut_face(Overlay& overlay, Index face, const Chord* chords,
                 rim.push_back({(p - 1)->id, invalid_index});
     }
     const std::size_t n = rim.size();
-    const auto place = [&rim](Index id) {
-        for (std::size_t i = 0; i < rim.size(); ++i)
-            if (rim[i].id == id)
-                return i;
-        return rim.size();
+    const auto place = [this](Index id) {
+        std::size_t i = 0;
+        while (i < cut_.rim.size() && cut_.rim[i].id != id)
+            ++i;
+        return i;
     };
-    std::vector<std::pair<std::size_t, std::size_t>> ends(count);
+    ends.resize(count);
     for (std::size_t c = 0; c < count; ++c) {
         ends[c] = {place(chords[c].from), place(chords[c].to)};
         if (ends[c].first == n || ends[c].second == n)
             return false;
     }
-    std::vector<char> done(count, 0);
+    done.assign(count, 0);
     for (std::size_t c = 0; c < count; ++c) {
         if (done[c])
             continue;
         // The piece to the left of chord c: at each point take the chord that turns left most.
-        std::vector<Index> piece;
         std::size_t previous = ends[c].first, current = ends[c].second;
         const std::size_t start = previous;
         done[c] = 1;
-        std::vector<std::size_t> path{previous};
+        path.assign(1, previous);
         while (current != start) {
             if (path.size() > n)
                 return false;
@@ -269,10 +258,11 @@ bool OverlayBuilder::cut_face(Overlay& overlay, Index face, const Chord* chords,
         }
         if (path.size() < 3)
             continue; // The border runs along an edge: nothing between.
+        polygon_.clear();
         for (const std::size_t i : path) {
             if (rim[i].id == invalid_index)
                 rim[i].id = local_vertex(overlay, mesh_.triangle(face)[rim[i].corner]);
-            piece.push_back(rim[i].id);
+            polygon_.push_back(rim[i].id);
         }
         for (std::size_t i = 0; i < path.size(); ++i) {
             const RimPoint& a = rim[path[i]];
@@ -284,7 +274,7 @@ bool OverlayBuilder::cut_face(Overlay& overlay, Index face, const Chord* chords,
             if (!std::binary_search(blocked_.begin(), blocked_.end(), h))
                 pending_.push_back(mesh_.face(mesh_.twin(h)));
         }
-        add_polygon(overlay, face, piece);
+        add_polygon(overlay, face, polygon_);
     }
     return true;
 }
@@ -296,10 +286,10 @@ void OverlayBuilder::flood(Overlay& overlay)
         if (face_stamp_[f] == stamp_)
             continue;
         face_stamp_[f] = stamp_;
-        std::vector<Index> polygon(3);
+        polygon_.resize(3);
         for (Index k = 0; k < 3; ++k)
-            polygon[k] = local_vertex(overlay, mesh_.triangle(f)[k]);
-        add_polygon(overlay, f, polygon);
+            polygon_[k] = local_vertex(overlay, mesh_.triangle(f)[k]);
+        add_polygon(overlay, f, polygon_);
         for (Index k = 0; k < 3; ++k) {
             const Index h = 3 * f + k;
             if (std::binary_search(blocked_.begin(), blocked_.end(), h))
@@ -555,24 +545,24 @@ std::optional<Overlay> OverlayBuilder::tile(const std::vector<Index>& label,
             const Index f = mesh_.face(g);
             if (face_stamp_[f] != stamp_) {
                 face_stamp_[f] = stamp_;
-                std::vector<Index> polygon;
+                polygon_.clear();
                 for (Index k = 0; k < 3; ++k) {
                     const Index halfedge = 3 * f + k;
                     const bool inside = label[mesh_.from(halfedge)] == own;
                     const bool next_inside = label[mesh_.to(halfedge)] == own;
                     if (inside)
-                        polygon.push_back(local_vertex(overlay, mesh_.from(halfedge)));
+                        polygon_.push_back(local_vertex(overlay, mesh_.from(halfedge)));
                     if (inside != next_inside)
-                        polygon.push_back(midpoint(halfedge));
+                        polygon_.push_back(midpoint(halfedge));
                     // Outside on both ends: the junction lies between the two midpoints.
                     if (!inside && !next_inside &&
                         label[mesh_.from(halfedge)] != label[mesh_.to(halfedge)]) {
                         const auto j = std::lower_bound(junctions.begin(), junctions.end(),
                                                         std::pair<Index, Index>(f, 0));
-                        polygon.push_back(j->second);
+                        polygon_.push_back(j->second);
                     }
                 }
-                add_polygon(overlay, f, polygon);
+                add_polygon(overlay, f, polygon_);
             }
             g = mesh_.twin(mesh_.prev(g));
         } while (g != first && g != invalid_index);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace bot2nurbs {
@@ -78,12 +79,25 @@ private:
         bool corner = false;
         Index across = invalid_index; //!< Label across the side that follows, where known.
     };
+    // A point on the rim of a mesh face while it is being cut: a corner or a border point.
+    struct RimPoint {
+        Index id;     // Overlay vertex; invalid for a corner that is not one (yet).
+        Index corner; // 0, 1, 2, or invalid.
+    };
+    // What cutting one face needs, kept so that its memory serves the next.
+    struct FaceCut {
+        std::vector<RimPoint> rim;
+        std::vector<std::pair<std::size_t, std::size_t>> ends; // Of each chord, on the rim.
+        std::vector<char> done;                                // Chords.
+        std::vector<std::size_t> path;                         // Around a piece, on the rim.
+    };
     std::vector<Station> walk_around(const std::vector<Index>& label,
                                      const std::vector<Index>& members, Index site) const;
 
     void next_stamp();
     Index local_vertex(Overlay& overlay, Index mesh_vertex);
-    void add_polygon(Overlay& overlay, Index face, const std::vector<Index>& polygon);
+    // A polygon of overlay vertices, which may get more.
+    void add_polygon(Overlay& overlay, Index face, std::vector<Index>& polygon);
     void split_same_side_edges(const Overlay& before, std::vector<Index>& polygon,
                                Overlay& overlay);
     bool same_side(const Overlay& overlay, Index p, Index q) const;
@@ -102,6 +116,8 @@ private:
     std::vector<Index> pending_; // Faces to visit.
     std::vector<std::array<Index, 2>> vertex_sides_; // Per border vertex: its one or two sides.
     std::vector<std::pair<std::pair<Index, Index>, Index>> midpoints_;
+    FaceCut cut_;
+    std::vector<Index> polygon_;
 };
 
 } // namespace bot2nurbs

@@ -129,7 +129,9 @@ TEST(DomainSamples, weights_of_a_quad_sum_to_its_area)
 TEST(DomainSamples, every_source_vertex_is_sampled_once_below_the_cap)
 {
     const HandDomain hand = sphere_cube(0, 12);
-    const SurfaceSampleSet set = sampled(hand);
+    SampleOptions options;
+    options.max_vertices = hand.mesh.vertex_count();
+    const SurfaceSampleSet set = sampled(hand, options);
     EXPECT_EQ(set.size(), 6 * 144 + hand.mesh.vertex_count());
     std::vector<int> seen(hand.mesh.vertex_count(), 0);
     for (const SourcePoint& p : set.source)

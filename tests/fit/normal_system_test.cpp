@@ -82,12 +82,11 @@ struct RandomRound {
             for (int i = 0; i < 16; ++i)
                 phi[i] = bs[i / 4] * bt[i % 4];
             const bool free = r.normal == Vec3{};
+            const double mu = std::max(problem.mu, r.least_mu);
             if (!free)
-                add(r.piece, phi, r.normal, dot(r.normal, r.residual),
-                    r.weight * (1.0 - problem.mu));
+                add(r.piece, phi, r.normal, dot(r.normal, r.residual), r.weight * (1.0 - mu));
             for (const Vec3& axis : axes)
-                add(r.piece, phi, axis, dot(axis, r.residual),
-                    r.weight * (free ? 1.0 : problem.mu));
+                add(r.piece, phi, axis, dot(axis, r.residual), r.weight * (free ? 1.0 : mu));
         }
         for (Index p = 0; p < reduced->piece_count(); ++p)
             for (int e = 0; e < 13; ++e) {
@@ -155,19 +154,48 @@ TEST(NormalSystem, point_rows_are_affine_equivariant)
     }
 }
 
-TEST(NormalSystem, an_old_factor_still_leads_to_the_solution)
+// Conjugate gradients stop at 1e-3 of the step; the moves are of order one.
+constexpr double with_other_factor = 1e-2;
+
+TEST(NormalSystem, the_factor_of_point_rows_serves_the_first_tangent_rows)
 {
     const RandomRound round(0.1);
     NormalSystem system(*round.reduced, Context());
     RoundProblem before = round.problem;
-    for (const double mu : {1.0, 0.3}) {
-        before.mu = mu;
-        ASSERT_TRUE(system.solve(before, any_condition, Context()).ok);
-    }
+    before.mu = 1.0;
+    ASSERT_TRUE(system.solve(before, any_condition, Context()).ok);
     const auto solution = system.solve(round.problem, any_condition, Context());
     ASSERT_TRUE(solution.ok);
-    // Conjugate gradients stop at 1e-3 of the step; the moves are of order one.
-    EXPECT_LT(round.distance_to_dense(solution.move), 1e-2);
+    EXPECT_EQ(solution.condition, 0.0); // of no factor of its own
+    EXPECT_LT(round.distance_to_dense(solution.move), with_other_factor);
+}
+
+TEST(NormalSystem, an_answer_starts_from_the_solution_before_it_and_its_factor)
+{
+    RandomRound round(1e-3);
+    NormalSystem system(*round.reduced, Context());
+    const auto before = system.solve(round.problem, any_condition, Context());
+    ASSERT_TRUE(before.ok);
+    for (std::size_t i = 0; i < round.rows.size() / 16; ++i)
+        round.rows[i].least_mu = 0.1;
+    round.problem.start = &before.move;
+    EXPECT_GT(round.distance_to_dense(before.move), with_other_factor);
+    const auto solution = system.solve(round.problem, any_condition, Context());
+    ASSERT_TRUE(solution.ok);
+    EXPECT_EQ(solution.condition, before.condition);
+    EXPECT_LT(round.distance_to_dense(solution.move), with_other_factor);
+}
+
+TEST(NormalSystem, a_start_that_is_the_solution_is_returned)
+{
+    RandomRound round(0.01);
+    NormalSystem system(*round.reduced, Context());
+    const auto before = system.solve(round.problem, any_condition, Context());
+    ASSERT_TRUE(before.ok);
+    round.problem.start = &before.move;
+    const auto solution = system.solve(round.problem, any_condition, Context());
+    ASSERT_TRUE(solution.ok);
+    EXPECT_EQ(solution.move, before.move);
 }
 
 TEST(NormalSystem, reports_the_condition_within_a_factor_of_two)
