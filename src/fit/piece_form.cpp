@@ -15,11 +15,27 @@ PieceForm::PieceForm(const ReducedNetwork& network, Index piece, int blocks, dou
     std::fill(out, out + doubles(size_, blocks), 0.0);
 }
 
+//! Adds weight times product of some rows at a time, which loads and stores each sum once.
+void PieceForm::add_products(const double* products, const RowWeights* weights)
+{
+    const std::size_t count = pairs(size_);
+    static_assert(rows_at_a_time == 4);
+    const double *p = products, *q = p + count, *r = q + count, *s = r + count;
+    for (int m = 0; m < blocks_; ++m) {
+        double* sum = block_ + m * count;
+        const double w = weights[0][m], x = weights[1][m], y = weights[2][m], z = weights[3][m];
+        for (std::size_t e = 0; e < count; ++e)
+            sum[e] = sum[e] + w * p[e] + x * q[e] + y * r[e] + z * s[e];
+    }
+}
+
 void PieceForm::add_rows(const RoundProblem& problem, std::vector<double>& scratch)
 {
-    const std::size_t k = size_, count = pairs(size_);
-    scratch.resize(k + count);
-    double *basis = scratch.data(), *product = basis + k;
+    const std::size_t k = size_, count = pairs(k);
+    scratch.assign(k + rows_at_a_time * count, 0.0);
+    double *basis = scratch.data(), *products = basis + k, *next = products;
+    RowWeights row_weights[rows_at_a_time] = {};
+    std::size_t pending = 0;
     for (std::size_t o = problem.groups->offset[piece_]; o < problem.groups->offset[piece_ + 1];
          ++o) {
         const FitRow& row = (*problem.rows)[problem.groups->order[o]];
@@ -41,22 +57,27 @@ void PieceForm::add_rows(const RoundProblem& problem, std::vector<double>& scrat
         for (std::size_t i = 0; i < k; ++i)
             for (int c = 0; c < 3; ++c)
                 right_[3 * i + c] += basis[i] * wanted[c];
-        double* next = product;
         for (std::size_t i = 0; i < k; ++i) {
             for (std::size_t j = i; j < k; ++j)
                 next[j - i] = basis[i] * basis[j];
             next += k - i;
         }
-        const double coupled[6] = {along * n.x * n.x + all, along * n.x * n.y,
-                                   along * n.x * n.z,       along * n.y * n.y + all,
-                                   along * n.y * n.z,       along * n.z * n.z + all};
-        for (int m = 0; m < blocks_; ++m) {
-            const double w = blocks_ == 1 ? row.weight : coupled[m];
-            double* sum = block_ + m * count;
-            for (std::size_t e = 0; e < count; ++e)
-                sum[e] += w * product[e];
+        row_weights[pending] = {along * n.x * n.x + all, along * n.x * n.y,
+                                along * n.x * n.z,       along * n.y * n.y + all,
+                                along * n.y * n.z,       along * n.z * n.z + all};
+        if (blocks_ == 1)
+            row_weights[pending][0] = row.weight;
+        if (++pending == rows_at_a_time) {
+            add_products(products, row_weights);
+            pending = 0;
+            next = products;
         }
     }
+    if (pending == 0)
+        return;
+    for (; pending < rows_at_a_time; ++pending)
+        row_weights[pending] = {};
+    add_products(products, row_weights);
 }
 
 void PieceForm::add_fairness(const RoundProblem& problem, const double* energy)

@@ -3,6 +3,7 @@
 
 #include "fit/normal_system.h"
 
+#include <array>
 #include <vector>
 
 namespace bot2nurbs {
@@ -27,6 +28,10 @@ public:
     void add_fairness(const RoundProblem& problem, const double* energy);
 
 private:
+    static constexpr std::size_t rows_at_a_time = 4;
+    using RowWeights = std::array<double, 6>; //!< Of the blocks.
+    void add_products(const double* products, const RowWeights* weights);
+
     const ReducedNetwork& network_;
     Index piece_, size_;
     int blocks_;
