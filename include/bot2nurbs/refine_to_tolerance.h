@@ -9,6 +9,7 @@
 #include "bot2nurbs/quad_domain.h"
 #include "bot2nurbs/spline_network.h"
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -34,6 +35,14 @@ struct ToleranceOptions {
     std::optional<Error> check() const;
 };
 
+struct Trial;
+
+//! A layout, and what refine_to_tolerance() can use of trying it.
+struct TriedLayout {
+    LayoutResult layout;
+    std::shared_ptr<Trial> trial; //!< Without the domain, which is the layout's.
+};
+
 //! Why refinement ended.
 enum class RefinementEnd {
     tolerance_met, //!< Proven: the upper bound of the distance both ways is within the tolerance;
@@ -57,7 +66,8 @@ struct RefinementRound {
     DistanceBounds distance; //!< Both ways, as far as deciding about the tolerance needed it.
     Index exceeding = 0;     //!< Patches known to exceed the tolerance.
     Index beyond = 0;        //!< Patches that are not known to be within the tolerance.
-    double seconds = 0.0;    //!< Including the cutting that led to its domain.
+    //! Including the cutting that led to its domain; of a start that was tried, only what was left.
+    double seconds = 0.0;
 };
 
 //! The best surface of all rounds: the first that is within the tolerance, else the one whose
@@ -89,12 +99,14 @@ double noise_reach(double noise, std::size_t count);
 //! way; patches all of whose points are within noise_reach() are not cut, as more patches would
 //! follow the noise.
 //!
+//! \param tried null, or what layout_for_tolerance() left of trying `start` with the same source,
+//! options and points: it is not fitted again.
 //! \pre the domain is valid. Errors: bad_option; those of compute_charts(), make_samples(),
 //! make_point_samples(), build_spline_network(), fit_network(), bound_hausdorff(),
 //! find_point_feet(); cancelled.
 Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain start,
                                          const ToleranceOptions& options, const PointData* points,
-                                         Context& context);
+                                         Context& context, std::shared_ptr<Trial> tried = nullptr);
 
 //! A layout to start from. Of a few, each finer than the last: the first that is within the
 //! tolerance, or as near as noise lets it, else of those of whose patches nine tenths are the one
@@ -102,8 +114,8 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
 //! patches gained nothing. Where no layout has so few, the first. Cutting patches of a layout that
 //! is too coarse nearly everywhere would copy their shapes, and need more of them. `layout.patches`
 //! is not used. Errors: bad_option; those of build_layout() and of refine_to_tolerance().
-Result<LayoutResult> layout_for_tolerance(const ManifoldMesh& source, LayoutOptions layout,
-                                          const ToleranceOptions& options, const PointData* points,
-                                          Context& context);
+Result<TriedLayout> layout_for_tolerance(const ManifoldMesh& source, LayoutOptions layout,
+                                         const ToleranceOptions& options, const PointData* points,
+                                         Context& context);
 
 } // namespace bot2nurbs

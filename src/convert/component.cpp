@@ -264,6 +264,19 @@ void find_detour(const QuadDomain& domain, const std::vector<Index>& vertex_name
     }
 }
 
+// Chosen for the tolerance, where there is one and the number of patches is free.
+Result<TriedLayout> make_layout(const ManifoldMesh& unit, const LayoutOptions& how,
+                                const std::optional<ToleranceOptions>& tolerance,
+                                const PointData* points, Context& context)
+{
+    if (tolerance && !how.patches)
+        return layout_for_tolerance(unit, how, *tolerance, points, context);
+    Result<LayoutResult> made = build_layout(unit, how, context);
+    if (!made)
+        return made.error();
+    return TriedLayout{std::move(*made), nullptr};
+}
+
 } // namespace
 
 Result<ConvertedComponent> convert_component(const MeshComponent& component, DomainWishes wishes,
@@ -311,6 +324,7 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
     const PointData* const fit_to = data ? &*data : nullptr;
 
     stage("layout");
+    std::shared_ptr<Trial> tried;
     if (wishes.supplied) {
         result.domain = std::move(*wishes.supplied);
     } else if (wishes.quads) {
@@ -326,19 +340,17 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
         layout_options.features = feature_paths(*features);
         layout_options.constraints = std::move(wishes.constraints);
         layout_options.seed = options.seed;
-        Result<LayoutResult> layout =
-            tolerance && !options.patches
-                ? layout_for_tolerance(*unit, layout_options, *tolerance, fit_to, context)
-                : build_layout(*unit, layout_options, context);
-        if (!layout)
-            return layout.error();
-        result.domain = std::move(layout->domain);
+        Result<TriedLayout> made = make_layout(*unit, layout_options, tolerance, fit_to, context);
+        if (!made)
+            return made.error();
+        tried = std::move(made->trial);
+        result.domain = std::move(made->layout.domain);
         result.domain.source_signature = signature(component.mesh);
         if (options.constraints_out)
             result.constraints = constraints_used(layout_options.constraints,
                                                   layout_options.features, *unit, result.domain);
-        outcome.layout = layout->summary;
-        for (const std::string& note : layout->summary.notes)
+        outcome.layout = made->layout.summary;
+        for (const std::string& note : outcome.layout->notes)
             context.log(LogLevel::info, "layout: " + note);
     }
     outcome.features = describe(*features, component);
@@ -350,8 +362,8 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
     std::optional<FitResult> fit;
     if (tolerance) {
         stage("refine");
-        Result<ToleranceFit> refined =
-            refine_to_tolerance(*unit, std::move(result.domain), *tolerance, fit_to, context);
+        Result<ToleranceFit> refined = refine_to_tolerance(
+            *unit, std::move(result.domain), *tolerance, fit_to, context, std::move(tried));
         if (!refined)
             return refined.error();
         outcome.tolerance = describe(*refined, frame.size);

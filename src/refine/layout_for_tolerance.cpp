@@ -24,16 +24,16 @@ double distance_of_share(const Trial& trial, double share)
 
 } // namespace
 
-Result<LayoutResult> layout_for_tolerance(const ManifoldMesh& source, LayoutOptions layout,
-                                          const ToleranceOptions& options, const PointData* points,
-                                          Context& context)
+Result<TriedLayout> layout_for_tolerance(const ManifoldMesh& source, LayoutOptions layout,
+                                         const ToleranceOptions& options, const PointData* points,
+                                         Context& context)
 {
     if (const auto error = options.check())
         return *error;
     const FitTarget target(source, points, options.tolerance);
-    std::optional<LayoutResult> best;
+    std::optional<TriedLayout> best;
     // One that cannot be made, or fitted, is no loss where there is another.
-    const auto without = [&best](const Error& error) -> Result<LayoutResult> {
+    const auto without = [&best](const Error& error) -> Result<TriedLayout> {
         if (best && error.code == ErrorCode::layout_failed)
             return std::move(*best);
         return error;
@@ -45,20 +45,23 @@ Result<LayoutResult> layout_for_tolerance(const ManifoldMesh& source, LayoutOpti
             return without(made.error());
         const Index count = made->domain.complex.quad_count();
         if (count > options.max_patches)
-            return best ? std::move(*best) : std::move(*made);
-        Result<Trial> trial = make_trial(target, made->domain, options, context);
-        if (!trial)
-            return without(trial.error());
-        const double ratio = distance_of_share(*trial, LayoutSearch::wanted_share) / target.limit;
+            return best ? std::move(*best) : TriedLayout{std::move(*made), nullptr};
+        Result<Trial> made_trial = make_trial(target, made->domain, options, context);
+        if (!made_trial)
+            return without(made_trial.error());
+        TriedLayout tried{std::move(*made), std::make_shared<Trial>(std::move(*made_trial))};
+        Trial& trial = *tried.trial;
+        const double ratio = distance_of_share(trial, LayoutSearch::wanted_share) / target.limit;
         // Samples do not see what bulges between them.
         if (ratio <= 1.0)
-            if (Status failed = prove_trial(target, *trial, context))
+            if (Status failed = prove_trial(target, trial, context))
                 return *failed;
-        if (trial->within || trial->beyond() == 0)
-            return made;
-        const auto verdict = search.look_at(count, trial->beyond(), ratio);
+        trial.domain = {};
+        if (trial.within || trial.beyond() == 0)
+            return tried;
+        const auto verdict = search.look_at(count, trial.beyond(), ratio);
         if (verdict.best || !best)
-            best = std::move(*made);
+            best = std::move(tried);
         if (verdict.done)
             return std::move(*best);
     }

@@ -102,7 +102,7 @@ std::optional<Error> ToleranceOptions::check() const
 
 Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain start,
                                          const ToleranceOptions& options, const PointData* points,
-                                         Context& context)
+                                         Context& context, std::shared_ptr<Trial> tried)
 {
     if (const auto error = options.check())
         return *error;
@@ -114,7 +114,11 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
     std::size_t first = 0; // Round with the rows of now.
     for (std::optional<RefinementEnd> end; !end;) {
         const double begin = now();
-        Result<Trial> made = make_trial(target, std::move(domain), current, context);
+        Result<Trial> made = tried ? Result<Trial>(std::move(*tried))
+                                   : make_trial(target, std::move(domain), current, context);
+        if (tried)
+            made->domain = std::move(domain);
+        tried.reset();
         if (!made && made.error().code == ErrorCode::layout_failed && !result.rounds.empty()) {
             result.termination = RefinementEnd::quality_limit;
             break;
@@ -122,8 +126,9 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
         if (!made)
             return made.error();
         Trial& trial = *made;
-        if (Status failed = prove_trial(target, trial, context))
-            return *failed;
+        if (!trial.proven)
+            if (Status failed = prove_trial(target, trial, context))
+                return *failed;
         result.rounds.push_back(describe(trial, now() - begin));
         const bool is_best = better(result.rounds, result.best);
         if (is_best)

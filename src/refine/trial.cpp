@@ -163,6 +163,7 @@ Result<Trial> make_trial(const FitTarget& target, QuadDomain domain,
 
 Status prove_trial(const FitTarget& target, Trial& trial, Context& context)
 {
+    trial.proven = true;
     if (target.points != nullptr)
         return prove_points(target, trial, context);
     const ManifoldMesh& source = target.source;

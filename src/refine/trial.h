@@ -24,6 +24,7 @@ struct Trial {
     FitResult fit;
     HausdorffBound bound; //!< With points: of these alone.
     std::vector<PatchError> patches;
+    bool proven = false; //!< By prove_trial().
     bool within = false; //!< Proven to be within the tolerance.
     Index anchors = 0;   //!< With points: samples of the source that stand in for some.
 

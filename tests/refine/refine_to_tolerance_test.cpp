@@ -348,10 +348,10 @@ TEST(LayoutForTolerance, a_smaller_tolerance_starts_from_more_patches_up_to_the_
         ToleranceOptions options = options_for(tolerance);
         options.max_patches = limit;
         Context context;
-        const Result<LayoutResult> layout =
+        const Result<TriedLayout> start =
             layout_for_tolerance(bumpy, {}, options, nullptr, context);
-        EXPECT_TRUE(layout);
-        return layout ? layout->domain.complex.quad_count() : 0;
+        EXPECT_TRUE(start);
+        return start ? start->layout.domain.complex.quad_count() : 0;
     };
     const Index few = patches(0.5, 5000), more = patches(1e-2, 200);
     EXPECT_LT(few, more);
@@ -383,15 +383,35 @@ TEST(LayoutForTolerance, a_layout_that_is_within_at_its_samples_alone_is_not_the
             tolerance = std::min(0.97 * tolerance, 2.0 * trial->distance());
     }
     ASSERT_TRUE(missed);
-    const Result<LayoutResult> start =
+    const Result<TriedLayout> start =
         layout_for_tolerance(ball, {}, options_for(tolerance), nullptr, context);
     ASSERT_TRUE(start);
-    EXPECT_GT(start->domain.complex.quad_count(), first->domain.complex.quad_count());
+    const QuadDomain& domain = start->layout.domain;
+    EXPECT_GT(domain.complex.quad_count(), first->domain.complex.quad_count());
     const Result<ToleranceFit> fit =
-        refine_to_tolerance(ball, start->domain, options_for(tolerance), nullptr, context);
+        refine_to_tolerance(ball, domain, options_for(tolerance), nullptr, context);
     ASSERT_TRUE(fit);
     EXPECT_EQ(fit->termination, RefinementEnd::tolerance_met);
     EXPECT_EQ(fit->rounds.size(), 1u);
+}
+
+TEST(LayoutForTolerance, what_was_tried_is_refined_as_if_it_were_not)
+{
+    const ManifoldMesh bumpy = wavy_ball(8.0);
+    ToleranceOptions options = options_for(1e-2);
+    options.max_patches = 400;
+    Context context;
+    const Result<TriedLayout> start = layout_for_tolerance(bumpy, {}, options, nullptr, context);
+    ASSERT_TRUE(start);
+    ASSERT_TRUE(start->trial);
+    const QuadDomain& domain = start->layout.domain;
+    const auto again = refine_to_tolerance(bumpy, domain, options, nullptr, context);
+    const auto after = refine_to_tolerance(bumpy, domain, options, nullptr, context, start->trial);
+    ASSERT_TRUE(again && after);
+    EXPECT_GE(again->rounds.size(), 2u);
+    EXPECT_EQ(after->rounds.size(), again->rounds.size());
+    EXPECT_EQ(after->termination, again->termination);
+    EXPECT_EQ(after->fit.surface.bezier(), again->fit.surface.bezier());
 }
 
 } // namespace
