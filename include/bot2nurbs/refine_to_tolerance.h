@@ -100,7 +100,7 @@ double noise_reach(double noise, std::size_t count);
 //! follow the noise.
 //!
 //! \param tried null, or what layout_for_tolerance() left of trying `start` with the same source,
-//! options and points: it is not fitted again.
+//! options and points: it is used up, and `start` not fitted again.
 //! \pre the domain is valid. Errors: bad_option; those of compute_charts(), make_samples(),
 //! make_point_samples(), build_spline_network(), fit_network(), bound_hausdorff(),
 //! find_point_feet(); cancelled.
