@@ -15,7 +15,7 @@ PieceForm::PieceForm(const ReducedNetwork& network, Index piece, int blocks, dou
     std::fill(out, out + doubles(size_, blocks), 0.0);
 }
 
-//! Adds weight times product of some rows at a time, which loads and stores each sum once.
+//! Adds weight times product of rows_at_a_time rows, which loads and stores each sum once.
 void PieceForm::add_products(const double* products, const RowWeights* weights)
 {
     const std::size_t count = pairs(size_);
@@ -32,7 +32,7 @@ void PieceForm::add_products(const double* products, const RowWeights* weights)
 void PieceForm::add_rows(const RoundProblem& problem, std::vector<double>& scratch)
 {
     const std::size_t k = size_, count = pairs(k);
-    scratch.assign(k + rows_at_a_time * count, 0.0);
+    scratch.assign(k + rows_at_a_time * count, 0.0); // What is missing of the last rows is zero.
     double *basis = scratch.data(), *products = basis + k, *next = products;
     RowWeights row_weights[rows_at_a_time] = {};
     std::size_t pending = 0;

@@ -78,12 +78,18 @@ conjugate_gradients(const ScaledFactor& matrix, const Eigen::VectorXd& right, Ei
 {
     // Iterations after which the rate so far says whether the rest is worth while.
     constexpr int trial = 4;
-    const bool from_zero = x.isZero(0.0);
+    // A start that points away from the solution is none.
+    const double along = right.dot(x);
+    const bool from_zero = !(along > 0.0);
+    if (from_zero)
+        x.setZero();
     Eigen::VectorXd r = from_zero ? right : right - matrix.times(x, context);
     Eigen::VectorXd z = precondition(r), p = z;
     double rz = r.dot(z);
-    const double start = rz, solution = from_zero ? rz : right.dot(x);
-    const double enough = limits.tolerance * limits.tolerance * solution;
+    const double first = rz, scale = from_zero ? rz : along;
+    const double enough = limits.tolerance * limits.tolerance * scale;
+    if (!(rz >= 0.0))
+        return std::nullopt;
     if (rz == 0.0 || (!from_zero && rz <= enough))
         return x;
     for (int i = 1; i <= limits.iterations && !context.cancelled(); ++i) {
@@ -98,7 +104,7 @@ conjugate_gradients(const ScaledFactor& matrix, const Eigen::VectorXd& right, Ei
         const double next = r.dot(z);
         if (next <= enough)
             return x;
-        if (i >= trial && i * std::log(enough / start) < limits.iterations * std::log(next / start))
+        if (i >= trial && i * std::log(enough / first) < limits.iterations * std::log(next / first))
             return std::nullopt;
         p = z + (next / rz) * p;
         rz = next;

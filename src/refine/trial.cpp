@@ -163,9 +163,11 @@ Result<Trial> make_trial(const FitTarget& target, QuadDomain domain,
 
 Status prove_trial(const FitTarget& target, Trial& trial, Context& context)
 {
-    trial.proven = true;
-    if (target.points != nullptr)
-        return prove_points(target, trial, context);
+    if (target.points != nullptr) {
+        Status failed = prove_points(target, trial, context);
+        trial.proven = !failed;
+        return failed;
+    }
     const ManifoldMesh& source = target.source;
     const double tolerance = target.tolerance;
     const QuadComplex& complex = trial.domain.complex;
@@ -195,8 +197,10 @@ Status prove_trial(const FitTarget& target, Trial& trial, Context& context)
         }
         const bool limited = trial.bound.termination == HausdorffTermination::cell_limit;
         if (!limited || decide.max_cells == 0 ||
-            std::any_of(trial.patches.begin(), trial.patches.end(), exceeds))
+            std::any_of(trial.patches.begin(), trial.patches.end(), exceeds)) {
+            trial.proven = true;
             return {};
+        }
         decide.max_cells = 0;
     }
 }

@@ -186,6 +186,21 @@ TEST(NormalSystem, an_answer_starts_from_the_solution_before_it_and_its_factor)
     EXPECT_LT(round.distance_to_dense(solution.move), with_other_factor);
 }
 
+TEST(NormalSystem, a_start_that_points_the_wrong_way_does_no_harm)
+{
+    RandomRound round(0.01);
+    NormalSystem system(*round.reduced, Context());
+    auto before = system.solve(round.problem, any_condition, Context());
+    ASSERT_TRUE(before.ok);
+    for (Vec3& m : before.move)
+        m = -1.0 * m;
+    round.problem.start = &before.move;
+    const auto solution = system.solve(round.problem, any_condition, Context());
+    ASSERT_TRUE(solution.ok);
+    EXPECT_EQ(solution.condition, before.condition);
+    EXPECT_LT(round.distance_to_dense(solution.move), with_other_factor);
+}
+
 TEST(NormalSystem, a_start_that_is_the_solution_is_returned)
 {
     RandomRound round(0.01);
