@@ -6,14 +6,15 @@
 #include <cstdio>
 #include <fstream>
 #include <string>
+#include <unistd.h>
 
 namespace bot2nurbs::test {
 
-//! A file in the folder for temporary files, removed at the end.
+//! A file in the folder for temporary files, of this process alone, removed at the end.
 class ScratchFile {
 public:
     ScratchFile(const std::string& name, const std::string& bytes)
-        : path_(testing::TempDir() + "bot2nurbs_read_" + name)
+        : path_(testing::TempDir() + "bot2nurbs_" + std::to_string(getpid()) + "_" + name)
     {
         std::ofstream(path_, std::ios::binary) << bytes;
     }
