@@ -10,8 +10,8 @@ normals. The right side is that of the closest triangle of the mesh. Beside ours
 are the normals of Open3D (Debian: python3-open3d): estimate_normals() and
 orient_normals_consistent_tangent_plane() with 12 and with 30 neighbours, its global sign chosen in
 its favour; and, with --ipsr, iterative Poisson reconstruction (Hou, Wang, Wang, Qin, Qian, He 2022)
-on top of Open3D's Poisson: the other global method that was in question; it takes about a minute a cloud.
-Needs VTK (scripts/install_dependencies.sh --render); without Open3D its columns are left out. Exit
+on top of Open3D's Poisson: the other global method that was in question; it takes about a minute
+a cloud. Needs VTK (scripts/install_dependencies.sh --render); without Open3D its columns are left out. Exit
 code 1 when a share of ours is below what the project promises: 99.9 % of clean points and with
 0.2 % of noise, 99 % with 1 %.
 """

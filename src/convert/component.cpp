@@ -38,8 +38,8 @@ Result<ManifoldMesh> unit_mesh(const ManifoldMesh& mesh, const Frame& frame)
     return ManifoldMesh::build(std::move(positions), mesh.triangles());
 }
 
-//! Puts the carrier's vertices where its provenance says they are on the unit mesh. A domain that
-//! was read and the same domain fresh from the layout then agree to the bit.
+//! Puts the vertices of a carrier that was read where its provenance says they are on the unit
+//! mesh, which is where a fresh layout has them: the two then agree to the bit.
 Status place_carrier(CarrierMesh& carrier, const ManifoldMesh& unit)
 {
     if (!carrier.refined) {
@@ -324,9 +324,11 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
     const PointData* const fit_to = data ? &*data : nullptr;
 
     stage("layout");
-    std::shared_ptr<Trial> tried;
+    TrialPointer tried;
     if (wishes.supplied) {
         result.domain = std::move(*wishes.supplied);
+        if (Status failed = place_carrier(result.domain.carrier, *unit))
+            return *failed;
     } else if (wishes.quads) {
         Result<QuadDomain> domain =
             import_layout(*unit, *wishes.quads, frame, *features, outcome.quads.emplace(), context);
@@ -354,8 +356,6 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
             context.log(LogLevel::info, "layout: " + note);
     }
     outcome.features = describe(*features, component);
-    if (Status failed = place_carrier(result.domain.carrier, *unit))
-        return *failed;
     if (outcome.quads)
         find_detour(result.domain, wishes.quads->source_vertex, *outcome.quads);
 

@@ -12,11 +12,6 @@ namespace {
 //! the input, and for ties of the bound.
 constexpr double aim = 1.0 - 1e-5;
 
-//! More rounds of a fit, and source vertices of a quad that are samples, than of default: they are
-//! cheap beside the patches that they save.
-constexpr double stall = 0.02;
-constexpr Index max_vertices = 288;
-
 //! Whether a surface that is so near is near enough.
 void decide(ToleranceReport& report)
 {
@@ -36,10 +31,10 @@ ToleranceOptions tolerance_options(const ConvertOptions& options, double toleran
         result.max_patches = *options.max_patches;
     result.spline = options.spline;
     result.keep_edges = options.domain_in.has_value() || options.quads.has_value() || options.cage;
+    const double stall = result.fit.stall;
     result.fit = options.fit;
-    result.fit.fairness_floor = std::min(options.fit.fairness_floor, FitOptions().fairness_floor);
     result.fit.stall = std::min(options.fit.stall, stall);
-    result.samples.max_vertices = max_vertices;
+    result.fit.fairness_floor = std::min(options.fit.fairness_floor, FitOptions().fairness_floor);
     return result;
 }
 

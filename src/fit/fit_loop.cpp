@@ -407,10 +407,10 @@ Status FitLoop::next_round(State& state, double& mu, bool& stuck)
     scale_fairness(fairness_decay, within_noise(state));
     const std::vector<double> factors = distance_factors(state, mu);
     NormalSystem::Solution solution;
-    bool answered = false;
+    const std::vector<Vec3>* start = nullptr;
     for (int answers = 0;;) {
-        solution = solve(state, rows_at(state, factors), mu, answered ? &solution.move : nullptr);
-        answered = false;
+        solution = solve(state, rows_at(state, factors), mu, start);
+        start = nullptr;
         if (context_.cancelled())
             return Context::cancelled_error("fit");
         if (!solution.ok && mu >= 1.0)
@@ -430,7 +430,7 @@ Status FitLoop::next_round(State& state, double& mu, bool& stuck)
                     floor_[q] = level_[q] =
                         std::max(floor_[q], std::min(options_.fairness, last_level_[q]));
                 apply_fairness();
-                answered = true;
+                start = &solution.move;
                 continue;
             }
             for (double share = 1.0; share >= least_step; share *= 0.5) {

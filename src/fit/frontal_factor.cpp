@@ -124,10 +124,10 @@ template <class Real> void FrontalFactor<Real>::assemble(int s, const std::vecto
     Panel own = panel(node);
     own.setZero();
     Matrix& rest = updates[s];
-    // The blocks on and below the diagonal are all that is used.
+    // Blocks above the diagonal are never read.
     rest.resize(Size(b) * node.row_count, Size(b) * node.row_count);
-    for (Size j = 0; j < rest.cols(); ++j)
-        rest.col(j).tail(rest.rows() - j / b * b).setZero();
+    for (Size j = 0; j < rest.cols(); j += b)
+        rest.bottomRows(rest.rows() - j).middleCols(j, b).setZero();
     for (int j = node.first; j < node.last; ++j)
         for (int e = plan_->lower_column[j]; e < plan_->lower_column[j + 1]; ++e) {
             const int i = plan_->lower_row[e], at = plan_->lower_place[e];

@@ -15,8 +15,8 @@ namespace {
 constexpr Index batch_pieces = 512;
 constexpr Index chunk_pieces = 16;
 //! Conjugate gradients with the factor of nearly the same matrix: at most as many iterations as
-//! cost half a factorisation, down to an error that leaves other places in peace when all of the
-//! move is at one, such as a spike.
+//! cost half a factorisation. Where most of the move is at a spike, 1e-2 of it would spoil what is
+//! elsewhere (FitNetwork.one_spot_that_folds_does_not_stop_the_rest).
 constexpr GradientLimits with_other_factor{20, 1e-3};
 //! With the factor, in single precision, of the matrix itself: a few iterations make up for its
 //! rounding. If that takes more, the matrix needs a factor in double precision.
@@ -190,8 +190,8 @@ NormalSystem::Solution NormalSystem::solve_coupled(const std::vector<Vec3>* star
     const auto by_scalar = [&](const Eigen::VectorXd& r) { return solve_by_scalar(r, context); };
     Solution solution;
     std::optional<Eigen::VectorXd> x;
-    // From round to round the point-distance part, and with it the matrix, changes too much for the
-    // factor of the last. In the first, rows are not far from those of the decoupled problem.
+    // From round to round the rows of samples that slide change too much for the factor of the
+    // last. In the first, rows are not far from those of the decoupled problem.
     if (coupled_.has_factor() && start != nullptr) {
         x = conjugate_gradients(coupled_, right, first, with_other_factor, by_coupled, context);
         solution.condition = coupled_condition_;

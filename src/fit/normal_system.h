@@ -43,7 +43,8 @@ struct RoundProblem {
     const std::vector<Vec3>* bezier = nullptr;     //!< 169 per quad; empty: all zero.
     const std::vector<double>* fairness = nullptr; //!< f_q.
     double mu = 1.0;                               //!< 1: point-distance rows.
-    //! Not null: the moves that solve the problem before this one, which differs in few quads.
+    //! Not null: the moves that solve the problem before this one. That differs in few quads only,
+    //! so that its factor preconditions this one.
     const std::vector<Vec3>* start = nullptr;
 };
 

@@ -19,7 +19,6 @@ PieceForm::PieceForm(const ReducedNetwork& network, Index piece, int blocks, dou
 void PieceForm::add_products(const double* products, const RowWeights* weights)
 {
     const std::size_t count = pairs(size_);
-    static_assert(rows_at_a_time == 4);
     const double *p = products, *q = p + count, *r = q + count, *s = r + count;
     for (int m = 0; m < blocks_; ++m) {
         double* sum = block_ + m * count;

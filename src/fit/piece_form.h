@@ -28,8 +28,8 @@ public:
     void add_fairness(const RoundProblem& problem, const double* energy);
 
 private:
-    static constexpr std::size_t rows_at_a_time = 4;
-    using RowWeights = std::array<double, 6>; //!< Of the blocks.
+    static constexpr std::size_t rows_at_a_time = 4; //!< As add_products() is written.
+    using RowWeights = std::array<double, 6>;        //!< Of the blocks.
     void add_products(const double* products, const RowWeights* weights);
 
     const ReducedNetwork& network_;

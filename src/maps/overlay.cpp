@@ -206,11 +206,11 @@ bool OverlayBuilder::cut_face(Overlay& overlay, Index face, const Chord* chords,
                 rim.push_back({(p - 1)->id, invalid_index});
     }
     const std::size_t n = rim.size();
-    const auto place = [this](Index id) {
-        std::size_t i = 0;
-        while (i < cut_.rim.size() && cut_.rim[i].id != id)
-            ++i;
-        return i;
+    const auto place = [&rim = rim](Index id) {
+        for (std::size_t i = 0; i < rim.size(); ++i)
+            if (rim[i].id == id)
+                return i;
+        return rim.size();
     };
     ends.resize(count);
     for (std::size_t c = 0; c < count; ++c) {

@@ -117,7 +117,7 @@ private:
     std::vector<std::array<Index, 2>> vertex_sides_; // Per border vertex: its one or two sides.
     std::vector<std::pair<std::pair<Index, Index>, Index>> midpoints_;
     FaceCut cut_;
-    std::vector<Index> polygon_;
+    std::vector<Index> polygon_; // Of the face, or the piece of one, that is added next.
 };
 
 } // namespace bot2nurbs

@@ -37,7 +37,7 @@ void offer(const Vec3& p, const Triangle& t, double& best, ClosestPoint::Hit& hi
     }
 }
 
-inline double box_distance_squared(const BoxTree::Node& box, const Vec3& p)
+double box_distance_squared(const BoxTree::Node& box, const Vec3& p)
 {
     const double x = std::max(0.0, std::max(box.min.x - p.x, p.x - box.max.x));
     const double y = std::max(0.0, std::max(box.min.y - p.y, p.y - box.max.y));

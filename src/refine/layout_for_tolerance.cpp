@@ -46,19 +46,19 @@ Result<TriedLayout> layout_for_tolerance(const ManifoldMesh& source, LayoutOptio
         const Index count = made->domain.complex.quad_count();
         if (count > options.max_patches)
             return best ? std::move(*best) : TriedLayout{std::move(*made), nullptr};
-        Result<Trial> made_trial = make_trial(target, made->domain, options, context);
+        Result<Trial> made_trial = make_trial(target, std::move(made->domain), options, context);
         if (!made_trial)
             return without(made_trial.error());
-        TriedLayout tried{std::move(*made), std::make_shared<Trial>(std::move(*made_trial))};
+        TriedLayout tried{std::move(*made), TrialPointer(new Trial(std::move(*made_trial)))};
         Trial& trial = *tried.trial;
         const double ratio = distance_of_share(trial, LayoutSearch::wanted_share) / target.limit;
         // Samples do not see what bulges between them.
         if (ratio <= 1.0)
             if (Status failed = prove_trial(target, trial, context))
                 return *failed;
-        trial.domain = {};
+        tried.layout.domain = std::move(trial.domain);
         if (trial.within || trial.beyond() == 0)
-            return tried;
+            return Result<TriedLayout>(std::move(tried));
         const auto verdict = search.look_at(count, trial.beyond(), ratio);
         if (verdict.best || !best)
             best = std::move(tried);

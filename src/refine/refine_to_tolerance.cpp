@@ -8,6 +8,7 @@
 #include "refine/trial.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <string>
@@ -86,6 +87,12 @@ const char* name(RefinementEnd end)
     return "";
 }
 
+ToleranceOptions::ToleranceOptions()
+{
+    fit.stall = 0.02;
+    samples.max_vertices = 288;
+}
+
 std::optional<Error> ToleranceOptions::check() const
 {
     const auto bad = [](const char* message) {
@@ -102,7 +109,7 @@ std::optional<Error> ToleranceOptions::check() const
 
 Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain start,
                                          const ToleranceOptions& options, const PointData* points,
-                                         Context& context, std::shared_ptr<Trial> tried)
+                                         Context& context, TrialPointer tried)
 {
     if (const auto error = options.check())
         return *error;
@@ -112,13 +119,18 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
     Trial best;
     QuadDomain domain = std::move(start);
     std::size_t first = 0; // Round with the rows of now.
+    const auto next_trial = [&]() -> Result<Trial> {
+        if (!tried)
+            return make_trial(target, std::move(domain), current, context);
+        Trial first_trial = std::move(*tried);
+        tried.reset();
+        assert(first_trial.patches.size() == domain.complex.quad_count());
+        first_trial.domain = std::move(domain);
+        return Result<Trial>(std::move(first_trial));
+    };
     for (std::optional<RefinementEnd> end; !end;) {
         const double begin = now();
-        Result<Trial> made = tried ? Result<Trial>(std::move(*tried))
-                                   : make_trial(target, std::move(domain), current, context);
-        if (tried)
-            made->domain = std::move(domain);
-        tried.reset();
+        Result<Trial> made = next_trial();
         if (!made && made.error().code == ErrorCode::layout_failed && !result.rounds.empty()) {
             result.termination = RefinementEnd::quality_limit;
             break;

@@ -161,6 +161,11 @@ Result<Trial> make_trial(const FitTarget& target, QuadDomain domain,
     return trial;
 }
 
+void TrialDeleter::operator()(Trial* trial) const
+{
+    delete trial;
+}
+
 Status prove_trial(const FitTarget& target, Trial& trial, Context& context)
 {
     if (target.points != nullptr) {

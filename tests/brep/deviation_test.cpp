@@ -95,8 +95,8 @@ TEST(Deviation, is_the_same_for_any_number_of_threads)
 TEST(Deviation, of_a_sphere_in_its_cube_is_known_at_corners_and_centres)
 {
     // From the cube's corners the unit sphere is sqrt(3) - 1 away. Towards them the sphere is
-    // 1 - 1/sqrt(3) from the cube, which falls linearly with the distance of the nearest sample:
-    // four thousand are 0.056 apart.
+    // 1 - 1/sqrt(3) from the cube, which falls linearly with the distance of the nearest sample. Of
+    // eight corners one has a sample near.
     const fixtures::Domain cube = fixtures::cube();
     Context context;
     const auto d =

@@ -39,12 +39,12 @@ TEST(LayoutSearch, a_layout_that_is_no_nearer_than_a_coarser_one_is_forgiven_onc
 TEST(LayoutSearch, where_few_patches_are_left_the_one_that_may_end_with_the_fewest_is_the_best)
 {
     LayoutSearch search(5000);
-    // Expected are 40 + 90 patches, so that finer layouts are worth a try.
-    const auto first = search.look_at(40, 3, 0.8);
+    // Expected are 40 + 600 patches, for the proof says that many more are beyond than samples did.
+    const auto first = search.look_at(40, 20, 0.8);
     EXPECT_TRUE(first.best);
     EXPECT_FALSE(first.done);
     EXPECT_EQ(search.patches(), 30u);
-    const auto many_left = search.look_at(55, 1, 1.2); // More than a tenth of them is beyond.
+    const auto many_left = search.look_at(55, 6, 1.2); // Of samples alone: nothing was proven.
     EXPECT_FALSE(many_left.best);
     EXPECT_FALSE(many_left.done);
     // 60 + 30, and any that is finer by a quarter has 75.
