@@ -15,8 +15,9 @@ namespace bot2nurbs {
 namespace {
 
 //! Places measured per direction, for a Bezier piece, at least and at most. A closest point costs
-//! some microseconds. Root mean squares need no more; the largest distance is for
-//! bound_hausdorff() to find.
+//! some microseconds. Root mean squares of either direction are within 1 % of those of sixteen
+//! times as many places (seven models); the largest distance of a mesh is for bound_hausdorff() to
+//! find.
 constexpr std::size_t face_samples_per_piece = 6, least_face_samples = 4000,
                       most_face_samples = 30000;
 constexpr std::size_t surface_samples_per_piece = 9, least_surface_samples = 2500,
