@@ -59,11 +59,12 @@ struct FitSummary {
     double condition = 0.0;     //!< Estimate for the (scaled) normal matrix.
     bool used_fallback = false; //!< The augmented or QR solve was needed.
     std::string termination;    //!< "stalled" or "round_limit".
-    //! Patches that face away from the normals of their samples at any of nine places on any of
-    //! their Bezier pieces; without normals, away from the surface of the first round.
+    //! Patches that run back over themselves, as seen at 25 places on each of their Bezier pieces:
+    //! du x dv passes through zero between two of them, or is more than a right angle away from the
+    //! normals of the samples around.
     Index folded_patches = 0;
-    //! Per patch: the smallest Jacobian at these places, the part of du x dv along the samples'
-    //! normal over the mean length of du x dv; below zero in folds.
+    //! Per patch: the smallest length of du x dv at these places, negative where it folds, over the
+    //! mean length.
     std::vector<double> smallest_jacobians;
 };
 

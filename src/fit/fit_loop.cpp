@@ -110,8 +110,7 @@ double speed_at(const SurfacePoint& s, double mean)
 FitLoop::FitLoop(const SplineNetwork& network, const ReducedNetwork& reduced,
                  const FitOptions& options, Context& context)
     : network_(network), reduced_(reduced), options_(options), context_(context),
-      system_(reduced, context), guard_(network.complex.quad_count()),
-      response_(network.complex, reduced)
+      system_(reduced, context), guard_(network.complex), response_(network.complex, reduced)
 {
     // Each of the 27 multiplications of a 3 x 3 block product, half of them by symmetry.
     coupled_affordable_ = 0.5 * 27.0 * system_.factor_work() <= coupled_work_limit;
@@ -459,24 +458,33 @@ Status FitLoop::next_round(State& state, double& mu, bool& stuck)
     }
 }
 
-void FitLoop::record(State& state, double mu, double start)
+Index FitLoop::take_feet(State& state)
 {
-    FitRound round;
+    Index crossed = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const FootPoint& foot = state.feet[i];
-        round.max = std::max(round.max, foot.distance);
         if (foot.where.quad != where[i].quad)
-            ++round.crossed;
+            ++crossed;
         where[i] = foot.where;
     }
     guard_.set_source(normals, where);
     state.folds = guard_.folds(state.surface, context_);
+    return crossed;
+}
+
+void FitLoop::record(State& state, double mu, double start)
+{
+    FitRound round;
+    round.crossed = take_feet(state);
+    for (const FootPoint& foot : state.feet)
+        round.max = std::max(round.max, foot.distance);
     round.rms = rms_distance(state);
     round.fairness = round_fairness_;
     round.damping = mu;
     round.seconds = now() - start;
     summary.rounds.push_back(round);
-    context_.progress(static_cast<double>(summary.rounds.size()) / options_.max_rounds);
+    context_.progress(
+        std::min(1.0, static_cast<double>(summary.rounds.size()) / options_.max_rounds));
 }
 
 Status FitLoop::run()
@@ -536,6 +544,8 @@ Status FitLoop::run()
         if (tangent)
             mu = std::max(mu_floor, mu_factor * mu);
     }
+    if (const auto error = unfold(state, now()))
+        return error;
     summary.smallest_jacobians = guard_.smallest_jacobians(state.surface, context_);
     summary.folded_patches = static_cast<Index>(std::count_if(
         state.folds.begin(), state.folds.end(), [](Index places) { return places > 0; }));

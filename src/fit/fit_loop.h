@@ -2,9 +2,11 @@
 #pragma once
 
 #include "bot2nurbs/fit_network.h"
+#include "fit/fold_easing.h"
 #include "fit/fold_guard.h"
 #include "fit/fold_response.h"
 #include "fit/foot_point.h"
+#include "fit/local_system.h"
 #include "fit/normal_system.h"
 
 #include <vector>
@@ -82,9 +84,24 @@ private:
     //! rounds hardly unfold. Parameters whose speed varies much make surfaces of few pieces
     //! overshoot. Ends: a quad is raised at most most_raises times, and brought back once.
     Status raise_at_folds(State& state);
+    //! Unfolds quads that fold after the last round, one by one, by more fairness there while all
+    //! others keep their places, and adds a round to the summary. No quad gets farther from its
+    //! samples than the farthest was, or where there is emphasis than twice that or it was.
+    Status unfold(State& state, double start);
+    //! The state after the moves of regions that help; sets which are out. `most`: per quad the
+    //! largest distance that is allowed. Errors: cancelled.
+    Result<State> eased(const State& state, const LocalSystem& local,
+                        std::vector<FoldEasing::Region>& regions,
+                        const std::vector<double>& most) const;
+    //! Like `moved`, after shortening the moves of regions that do not help.
+    State moved_in_regions(const State& state, std::vector<FoldEasing::Region>& regions,
+                           std::vector<Vec3>& move) const;
+    std::vector<double> largest_distances(const State& state) const; //!< Per quad.
     double rms_distance(const State& state) const;
     void apply_fairness();
     //! Takes the feet as the new places of the samples, and of the normals that curls are known by.
+    //! \return how many samples have crossed into another quad.
+    Index take_feet(State& state);
     void record(State& state, double mu, double start);
 
     const SplineNetwork& network_;

@@ -18,13 +18,6 @@ constexpr std::array<double, 5> places{0.02, 0.26, 0.5, 0.74, 0.98};
 //! Places of a quad: side x side, those of constant u in a row.
 constexpr Index side = places.size() * pieces_per_side;
 constexpr Index places_per_quad = side * side;
-//! Normals of the source are known by cells, 3 x 3 of a piece: so many samples there are.
-constexpr Index cells_per_piece_side = 3;
-constexpr Index cell_side = cells_per_piece_side * pieces_per_side;
-constexpr Index cells_per_quad = cell_side * cell_side;
-//! No cone of normals is taken to be narrower than this, the sine of its half angle: samples are
-//! few.
-constexpr double least_slack = 0.3;
 //! Places whose normals are opposed even when the way between them was halved so often are on
 //! either side of a fold.
 constexpr int halvings = 12;
@@ -48,48 +41,18 @@ struct PlaceBasis {
     }
 };
 
-Index cell_at(double u, double v)
-{
-    const auto along = [](double x) {
-        return std::min(cell_side - 1, static_cast<Index>(std::max(0.0, cell_side * x)));
-    };
-    return cell_side * along(u) + along(v);
-}
-
-struct NormalSum {
-    Vec3 sum;
-    double count = 0.0;
-
-    void add(const NormalSum& other)
-    {
-        sum += other.sum;
-        count += other.count;
-    }
-};
-
-//! Minus the cosine of the angle from which a normal is far from these: a right angle beyond their
-//! cone, as the surface may well stand across them where it rounds an edge or a groove. Those of a
-//! cone of half angle a have a mean of length (1 + cos a) / 2.
-double slack_of(const NormalSum& normals)
-{
-    const double cosine = std::max(0.0, 2.0 * norm(normals.sum) / normals.count - 1.0);
-    return std::max(least_slack, std::sqrt(std::max(0.0, 1.0 - cosine * cosine)));
-}
-
 //! The places of one quad.
 class QuadPlaces {
 public:
-    //! `source`: what is known of it, by cells, or null.
-    QuadPlaces(const SplineSurface& surface, Index quad, const FoldGuard::Source* source)
+    //! `source`: null where nothing is known of it.
+    QuadPlaces(const SplineSurface& surface, Index quad, const SourceNormals* source)
         : surface_(surface), quad_(quad)
     {
         find_normals();
         find_sides_of_folds();
         for (Index k = 0; k < places_per_quad && source != nullptr; ++k) {
             const Place& p = place_[k];
-            const FoldGuard::Source& there = source[cell_at(p.u, p.v)];
-            const double along = dot(p.normal, there.normal);
-            if (along < 0.0 && along < -there.slack * norm(p.normal))
+            if (source->far(quad, p.u, p.v, p.normal))
                 sign_[k] = -1;
         }
     }
@@ -184,14 +147,14 @@ private:
 
 template <class Value, class Measure>
 std::vector<Value> of_quads(const SplineSurface& surface,
-                            const std::vector<FoldGuard::Source>& source, const Context& context,
+                            const std::optional<SourceNormals>& source, const Context& context,
                             const Measure& measure)
 {
     std::vector<Value> values(surface.patch_count());
     for_each_chunk(context, values.size(), chunk_quads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t q = begin; q < end; ++q)
-            values[q] = measure(QuadPlaces(surface, static_cast<Index>(q),
-                                           source.empty() ? nullptr : &source[cells_per_quad * q]));
+            values[q] =
+                measure(QuadPlaces(surface, static_cast<Index>(q), source ? &*source : nullptr));
     });
     return values;
 }
@@ -200,27 +163,7 @@ std::vector<Value> of_quads(const SplineSurface& surface,
 
 void FoldGuard::set_source(const std::vector<Vec3>& normals, const std::vector<DomainPoint>& where)
 {
-    const std::size_t count = static_cast<std::size_t>(cells_per_quad) * quads_;
-    const auto piece_of = [](std::size_t cell) {
-        const std::size_t k = cell % cells_per_quad;
-        return pieces_per_side * pieces_per_side * (cell / cells_per_quad) +
-               pieces_per_side * (k / cell_side / cells_per_piece_side) +
-               k % cell_side / cells_per_piece_side;
-    };
-    std::vector<NormalSum> in_cell(count),
-        on_piece(count / (cells_per_piece_side * cells_per_piece_side));
-    for (std::size_t i = 0; i < normals.size(); ++i)
-        in_cell[cells_per_quad * where[i].quad + cell_at(where[i].u, where[i].v)].add(
-            {normals[i], 1.0});
-    for (std::size_t c = 0; c < count; ++c)
-        on_piece[piece_of(c)].add(in_cell[c]);
-    source_.assign(count, {});
-    for (std::size_t c = 0; c < count; ++c) {
-        const NormalSum& around = on_piece[piece_of(c)];
-        const NormalSum& here = in_cell[c].count > 0.0 ? in_cell[c] : around;
-        if (around.count > 0.0)
-            source_[c] = {normalized(here.sum), slack_of(around)};
-    }
+    source_.emplace(complex_, normals, where);
 }
 
 std::vector<Index> FoldGuard::folds(const SplineSurface& surface, const Context& context) const

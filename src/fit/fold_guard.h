@@ -3,7 +3,9 @@
 
 #include "bot2nurbs/context.h"
 #include "bot2nurbs/spline_network.h"
+#include "fit/source_normals.h"
 
+#include <optional>
 #include <vector>
 
 namespace bot2nurbs {
@@ -18,16 +20,10 @@ namespace bot2nurbs {
 //! from those of the source around.
 class FoldGuard {
 public:
-    explicit FoldGuard(Index quads) : quads_(quads) {}
+    //! The complex must outlive this.
+    explicit FoldGuard(const QuadComplex& complex) : complex_(complex) {}
 
-    //! What is known of the source in a cell of the domain.
-    struct Source {
-        Vec3 normal;        //!< Unit mean; zero: nothing.
-        double slack = 0.0; //!< Minus the cosine of the angle from which normals are far from it.
-    };
-
-    //! Takes unit normals of the source at places of the domain, to know curls by: the mean in
-    //! a cell of a ninth of a piece or, where there are none, on the piece.
+    //! Takes unit normals of the source at places of the domain, to know curls by.
     void set_source(const std::vector<Vec3>& normals, const std::vector<DomainPoint>& where);
 
     //! Per quad: places on the wrong side of folds (the side with fewer places) or in curls.
@@ -38,8 +34,8 @@ public:
                                            const Context& context) const;
 
 private:
-    Index quads_;
-    std::vector<Source> source_; //!< By cells of quads.
+    const QuadComplex& complex_;
+    std::optional<SourceNormals> source_;
 };
 
 } // namespace bot2nurbs

@@ -55,7 +55,7 @@ SplineSurface rolled_in_7(const FlatGrid& grid, double degrees)
 TEST(FoldGuard, counts_folds_where_they_are)
 {
     const FlatGrid grid;
-    const FoldGuard guard(grid.domain.complex.quad_count());
+    const FoldGuard guard(grid.domain.complex);
     const Context context;
     const std::vector<Index> none(grid.domain.complex.quad_count(), 0);
     EXPECT_EQ(guard.folds(grid.surface, context), none);
@@ -69,7 +69,7 @@ TEST(FoldGuard, counts_folds_where_they_are)
 TEST(FoldGuard, takes_a_turn_for_a_fold_at_no_angle)
 {
     const FlatGrid grid;
-    const FoldGuard guard(grid.domain.complex.quad_count());
+    const FoldGuard guard(grid.domain.complex);
     const Context context;
     const std::vector<Index> none(grid.domain.complex.quad_count(), 0);
     for (const double degrees : {60.0, 180.0, 350.0, 900.0})
@@ -88,7 +88,7 @@ TEST(FoldGuard, takes_a_turn_between_two_places_for_no_fold)
         for (Index j = 0; j < 13; ++j)
             turned.bezier()[SplineNetwork::row(7, i, j)] =
                 grid.surface.bezier(7, 0, j) + Vec3{x[i], 0.0, i < 5 ? 0.0 : above};
-    const FoldGuard guard(grid.domain.complex.quad_count());
+    const FoldGuard guard(grid.domain.complex);
     EXPECT_EQ(guard.folds(turned, Context())[7], 0u);
     // Pressed flat it is a fold.
     for (Vec3& c : turned.bezier())
@@ -101,7 +101,7 @@ TEST(FoldGuard, counts_curls_by_the_normals_of_the_source)
     const FlatGrid grid;
     const SurfaceSampleSet samples =
         sample_target({grid.domain, [](const Vec3& p) { return p; }, {}, 1.0});
-    FoldGuard guard(grid.domain.complex.quad_count());
+    FoldGuard guard(grid.domain.complex);
     guard.set_source(samples.normals, samples.domain);
     const Context context;
     const std::vector<Index> none(grid.domain.complex.quad_count(), 0);
@@ -116,7 +116,7 @@ TEST(FoldGuard, counts_curls_by_the_normals_of_the_source)
 TEST(FoldGuard, jacobians_are_one_on_a_regular_grid_and_below_zero_in_a_fold)
 {
     const FlatGrid grid;
-    const FoldGuard guard(grid.domain.complex.quad_count());
+    const FoldGuard guard(grid.domain.complex);
     const Context context;
     for (const double jacobian : guard.smallest_jacobians(grid.surface, context))
         EXPECT_NEAR(jacobian, 1.0, 1e-9);
@@ -167,21 +167,48 @@ TEST(FoldGuard, a_curved_source_has_slack)
         const double t = 4.0 * samples.domain[i].u, angle = 2.8 * (t - std::floor(t) - 0.5);
         samples.normals[i] = {std::sin(angle), 0.0, std::cos(angle)};
     }
-    FoldGuard guard(grid.domain.complex.quad_count());
+    FoldGuard guard(grid.domain.complex);
     guard.set_source(samples.normals, samples.domain);
     const std::vector<Index> none(grid.domain.complex.quad_count(), 0);
     EXPECT_EQ(guard.folds(rolled_in_7(grid, 60.0), Context()), none);
 }
 
-TEST(FoldGuard, a_fit_reports_the_patches_that_fold)
+TEST(FoldGuard, a_column_so_narrow_that_it_overshoots_is_unfolded_in_the_end)
 {
-    // A column so narrow that its patches cannot but overshoot.
     const FitSummary summary = fit_of_grid_with_narrow_column(0.005);
+    EXPECT_EQ(summary.folded_patches, 0u);
+    for (const double jacobian : summary.smallest_jacobians)
+        EXPECT_GT(jacobian, 0.0);
+}
+
+TEST(FoldGuard, a_fit_reports_the_patches_that_fold_and_leaves_them_where_the_samples_do)
+{
+    // The middle column hangs over on both sides, as if its normals were those of the rest: no
+    // surface near the samples faces up everywhere.
+    const fixtures::Domain domain = fixtures::disk_grid(across, along);
+    SurfaceSampleSet samples =
+        sample_target({domain,
+                       [](const Vec3& p) {
+                           const double t = std::clamp(p.x - across / 2, 0.0, 1.0);
+                           return Vec3{p.x - 1.5 * std::sin(2.0 * M_PI * t), p.y,
+                                       3.0 * std::sin(M_PI * t) * std::sin(M_PI * t)};
+                       },
+                       {},
+                       1.0});
+    std::fill(samples.normals.begin(), samples.normals.end(), Vec3{0, 0, 1});
+    const auto network = build_spline_network(domain.complex, SplineScheme::peters);
+    Context context;
+    const FitSummary summary = fit_network(*network, samples, {}, context)->summary;
     EXPECT_GT(summary.folded_patches, 0u);
     Index below = 0;
     for (const double jacobian : summary.smallest_jacobians)
         below += jacobian < 0.0;
     EXPECT_EQ(summary.folded_patches, below);
+    // Unfolding is not bought with distance.
+    double largest = 0.0;
+    for (const FitRound& round : summary.rounds)
+        largest = std::max(largest, round.max);
+    EXPECT_LE(summary.rounds.back().max, largest);
 }
 
 TEST(FoldResponse, shortens_moves_in_its_quads_and_nowhere_far_from_them)
