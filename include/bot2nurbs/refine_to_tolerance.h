@@ -75,12 +75,13 @@ struct RefinementRound {
     DistanceBounds distance; //!< Both ways, as far as deciding about the tolerance needed it.
     Index exceeding = 0;     //!< Patches known to exceed the tolerance.
     Index beyond = 0;        //!< Patches that are not known to be within the tolerance.
+    Index folded = 0;        //!< Patches that fold, see FitSummary.
     //! Including the cutting that led to its domain; of a start that was tried, only what was left.
     double seconds = 0.0;
 };
 
-//! The best surface of all rounds: the first that is within the tolerance, else the one whose
-//! largest known distance is least.
+//! The best surface of all rounds: of those within the tolerance the first with the fewest patches
+//! that fold, else the one whose largest known distance is least.
 struct ToleranceFit {
     QuadDomain domain;
     FitResult fit;

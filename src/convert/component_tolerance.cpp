@@ -59,9 +59,9 @@ void log_rounds(const ToleranceReport& report, const Context& context)
         context.log(LogLevel::info,
                     fmt::format("refinement round {}: {} patches, rms {:.4g}, distance at least "
                                 "{:.4g} and at most {:.4g}, {} patches exceed the tolerance, {} "
-                                "more may, {:.2f} s",
+                                "more may, {} fold, {:.2f} s",
                                 i + 1, r.patches, r.rms, r.distance.lower, r.distance.upper,
-                                r.exceeding, r.beyond - r.exceeding, r.seconds));
+                                r.exceeding, r.beyond - r.exceeding, r.folded, r.seconds));
     }
 }
 

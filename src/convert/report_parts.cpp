@@ -300,6 +300,7 @@ Json tolerance_json(const ToleranceReport& t)
                                {"upper_bound", r.distance.upper},
                                {"exceeding", r.exceeding},
                                {"beyond", r.beyond},
+                               {"folded", r.folded},
                                {"seconds", r.seconds}});
     return j;
 }

@@ -74,18 +74,18 @@ void mark(const Trial& trial, Index quad, std::vector<char>& marks)
 std::vector<char> choose_marks(const Trial& trial, Index max_patches)
 {
     const QuadComplex& complex = trial.domain.complex;
-    // Patches that are only undecided wait until none is known to exceed the tolerance.
+    // Patches that are only undecided, or fold, wait until none is known to exceed the tolerance.
     const bool any = std::any_of(trial.patches.begin(), trial.patches.end(),
                                  [](const PatchError& patch) { return patch.exceeds; });
     std::vector<Index> cut;
     for (Index q = 0; q < complex.quad_count(); ++q)
-        if (any ? trial.patches[q].exceeds : trial.patches[q].beyond)
+        if (any ? trial.patches[q].exceeds : trial.patches[q].beyond || trial.patches[q].folded)
             cut.push_back(q);
     std::stable_sort(cut.begin(), cut.end(), [&](Index a, Index b) {
         return trial.patches[a].distance > trial.patches[b].distance;
     });
     const double least = cut.empty() ? 0.0 : left_share * trial.patches[cut[0]].distance;
-    while (!cut.empty() && trial.patches[cut.back()].distance < least)
+    while (any && trial.patches[cut.back()].distance < least)
         cut.pop_back();
 
     const MarkCosts costs = MarkCosts::of_regularity(complex, corner_angles(trial.charts));

@@ -57,9 +57,9 @@ Result<TriedLayout> layout_for_tolerance(const ManifoldMesh& source, LayoutOptio
             if (Status failed = prove_trial(target, trial, context))
                 return *failed;
         tried.layout.domain = std::move(trial.domain);
-        if (trial.within || trial.beyond() == 0)
+        if (trial.to_cut() == 0)
             return Result<TriedLayout>(std::move(tried));
-        const auto verdict = search.look_at(count, trial.beyond(), ratio);
+        const auto verdict = search.look_at(count, trial.to_cut(), ratio);
         if (verdict.best || !best)
             best = std::move(tried);
         if (verdict.done)

@@ -41,15 +41,18 @@ RefinementRound describe(const Trial& trial, double seconds)
     round.distance.upper = std::max(round.distance.lower, trial.bound.upper());
     round.exceeding = trial.exceeding();
     round.beyond = trial.beyond();
+    round.folded = trial.folded();
     round.seconds = seconds;
     return round;
 }
 
-// Whether the last round is nearer to the tolerance than the best one so far.
+// Whether the last round is nearer to the tolerance than the best one so far, or folds less.
 bool better(const std::vector<RefinementRound>& rounds, Index best)
 {
     const RefinementRound &a = rounds.back(), &b = rounds[best];
-    return rounds.size() == 1 || a.beyond == 0 || a.distance.lower < b.distance.lower;
+    if (rounds.size() == 1 || (a.beyond == 0) != (b.beyond == 0))
+        return rounds.size() == 1 || a.beyond == 0;
+    return a.beyond == 0 ? a.folded < b.folded : a.distance.lower < b.distance.lower;
 }
 
 // Cuts the domain of a trial where it must be. \return why not, if it cannot be.
@@ -142,21 +145,22 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
             if (Status failed = prove_trial(target, trial, context))
                 return *failed;
         result.rounds.push_back(describe(trial, now() - begin));
+        const bool reached = result.rounds.size() > 1 && result.rounds[result.best].beyond == 0;
         const bool is_best = better(result.rounds, result.best);
         if (is_best)
             result.best = static_cast<Index>(result.rounds.size() - 1);
 
         const bool tangent = current.fit.rows == DistanceRows::tangent;
         const bool stuck = stalled(result.rounds, first, tangent ? tangent_patience : patience);
-        if (trial.within) {
+        const bool near = trial.within || (points != nullptr && trial.beyond() == 0);
+        // Within the tolerance only folds are left to cut: as long as that makes fewer of them.
+        if (near ? trial.folded() == 0 || !is_best : reached) {
             end = RefinementEnd::tolerance_met;
-        } else if (points != nullptr && trial.beyond() == 0) {
-            end = RefinementEnd::noise_limit;
-        } else if (stuck && tangent) {
+        } else if (stuck && tangent && !near) {
             current.fit.rows = DistanceRows::point;
             first = result.rounds.size();
             domain = is_best ? trial.domain : best.domain;
-        } else if (stuck) {
+        } else if (stuck && !near) {
             end = RefinementEnd::stalled;
         } else {
             Result<std::optional<RefinementEnd>> failed =
@@ -170,6 +174,10 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
         if (end)
             result.termination = *end;
     }
+    if (best.within)
+        result.termination = RefinementEnd::tolerance_met;
+    else if (points != nullptr && best.beyond() == 0)
+        result.termination = RefinementEnd::noise_limit;
     result.domain = std::move(best.domain);
     result.fit = std::move(best.fit);
     result.bound = std::move(best.bound);

@@ -54,6 +54,12 @@ void measure_samples(const SurfaceSampleSet& samples, const std::vector<std::siz
         patches[q].change = mean_changes(residual.data() + first[q], side);
 }
 
+template <class Condition>
+Index count(const std::vector<PatchError>& patches, const Condition& condition)
+{
+    return static_cast<Index>(std::count_if(patches.begin(), patches.end(), condition));
+}
+
 struct FitSamples {
     SurfaceSampleSet all;
     Index anchors = 0;
@@ -88,14 +94,22 @@ Result<FitSamples> samples_of(const FitTarget& target, const QuadComplex& comple
 
 Index Trial::exceeding() const
 {
-    return static_cast<Index>(std::count_if(patches.begin(), patches.end(),
-                                            [](const PatchError& p) { return p.exceeds; }));
+    return count(patches, [](const PatchError& p) { return p.exceeds; });
 }
 
 Index Trial::beyond() const
 {
-    return static_cast<Index>(std::count_if(patches.begin(), patches.end(),
-                                            [](const PatchError& p) { return p.beyond; }));
+    return count(patches, [](const PatchError& p) { return p.beyond; });
+}
+
+Index Trial::folded() const
+{
+    return count(patches, [](const PatchError& p) { return p.folded; });
+}
+
+Index Trial::to_cut() const
+{
+    return count(patches, [](const PatchError& p) { return p.beyond || p.folded; });
 }
 
 double Trial::distance() const
@@ -156,8 +170,11 @@ Result<Trial> make_trial(const FitTarget& target, QuadDomain domain,
     else
         measure_samples(samples->all, samples->first, trial.fit.surface, options.samples.per_side,
                         trial.patches);
-    for (PatchError& patch : trial.patches)
+    for (Index q = 0; q < complex.quad_count(); ++q) {
+        PatchError& patch = trial.patches[q];
         patch.exceeds = patch.beyond = patch.distance > target.limit;
+        patch.folded = trial.fit.summary.smallest_jacobians[q] < 0.0;
+    }
     return trial;
 }
 

@@ -12,6 +12,7 @@ struct PatchError {
     double distance = 0.0; //!< Largest distance known of, both ways.
     bool exceeds = false;  //!< A place is known to be beyond the tolerance.
     bool beyond = false;   //!< Not known to be within the tolerance.
+    bool folded = false;   //!< It folds, see FitSummary.
     //! How much the distance from the source changes along u and along v: mean squares of its
     //! differences on the grid of the samples.
     std::array<double, 2> change{};
@@ -30,6 +31,8 @@ struct Trial {
 
     Index exceeding() const;
     Index beyond() const;
+    Index folded() const;
+    Index to_cut() const; //!< Beyond or folded.
     //! The largest distance known of.
     double distance() const;
 };

@@ -49,6 +49,21 @@ TEST(ChooseMarks, distances_that_change_in_all_directions_halve_both)
         EXPECT_TRUE(marked(trial, marks, quad, s));
 }
 
+TEST(ChooseMarks, a_patch_that_folds_is_cut_once_none_exceeds_the_tolerance)
+{
+    Trial trial = one_beyond(7, {1.0, 1.0});
+    const Index folded = 20; // Away from the other.
+    trial.patches[folded].folded = true;
+    std::vector<char> marks = choose_marks(trial, 1000);
+    EXPECT_TRUE(marked(trial, marks, 7, 0));
+    EXPECT_FALSE(marked(trial, marks, folded, 0));
+    trial.patches[7] = {};
+    marks = choose_marks(trial, 1000);
+    EXPECT_FALSE(marked(trial, marks, 7, 0));
+    for (Index s = 0; s < 4; ++s)
+        EXPECT_TRUE(marked(trial, marks, folded, s));
+}
+
 TEST(ChooseMarks, every_quad_gets_an_even_number_of_marks)
 {
     const Trial trial = one_beyond(3, {1.0, 1.0});

@@ -397,7 +397,7 @@ TEST(LayoutForTolerance, a_layout_that_is_within_at_its_samples_alone_is_not_tak
 TEST(LayoutForTolerance, what_was_tried_is_refined_as_if_it_were_not)
 {
     const ManifoldMesh bumpy = wavy_ball(8.0);
-    ToleranceOptions options = options_for(1e-2);
+    ToleranceOptions options = options_for(6e-3);
     options.max_patches = 400;
     Context context;
     Result<TriedLayout> start = layout_for_tolerance(bumpy, {}, options, nullptr, context);
