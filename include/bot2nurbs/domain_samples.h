@@ -67,6 +67,10 @@ struct PointData {
 Result<std::vector<SourcePoint>> closest_places(const ManifoldMesh& source,
                                                 const std::vector<Vec3>& points, Context& context);
 
+//! Looks for places of the source, which must outlive it, for fit_network(). Cost O(F log F), then
+//! O(log F) each.
+NearestPlace nearest_place(const ManifoldMesh& source, const Context& context);
+
 //! Given points as samples: each where the charts map its place of the source. Normals stay
 //! unknown. Cost linear. Errors: invalid_domain (no chart covers a face), cancelled. The same for
 //! any thread count. \pre the arrays of `points` are of one length

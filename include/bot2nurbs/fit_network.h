@@ -77,8 +77,13 @@ struct FitResult {
 //! Fits all patches at once: least squares over the samples, exact thin-plate fairness, constraints
 //! eliminated exactly, alternating with closest-point parameter correction that walks over patch
 //! edges. `samples.domain` is updated. Same result for any thread count.
+//!
+//! \param nearest where it is given, further samples are taken from round to round where those
+//! there were have slid away, at the places nearest to the surface there; they are not returned.
+//! Without them nothing holds the surface there, and no distance from samples to it would tell.
 //! Errors: bad_option, empty_input, fit_failed, cancelled.
 Result<FitResult> fit_network(const SplineNetwork& network, SurfaceSampleSet& samples,
-                              const FitOptions& options, Context& context);
+                              const FitOptions& options, Context& context,
+                              const NearestPlace& nearest = {});
 
 } // namespace bot2nurbs

@@ -3,6 +3,8 @@
 
 #include "bot2nurbs/manifold_mesh.h"
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 namespace bot2nurbs {
@@ -27,5 +29,14 @@ struct SurfaceSampleSet {
 
     std::size_t size() const { return positions.size(); }
 };
+
+//! A place of the source, and the unit normal of its face.
+struct NearPlace {
+    Vec3 position, normal;
+};
+
+//! The place of the source nearest to a point, of those whose faces look along a direction, or
+//! nothing. May be called from several threads at once.
+using NearestPlace = std::function<std::optional<NearPlace>(const Vec3& point, const Vec3& along)>;
 
 } // namespace bot2nurbs

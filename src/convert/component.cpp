@@ -228,14 +228,14 @@ Result<SurfaceSampleSet> sample_domain(const ManifoldMesh& source, const QuadCom
 }
 
 Result<FitResult> fit_samples(const QuadComplex& complex, const std::vector<QuadChart>& charts,
-                              SurfaceSampleSet& samples, const ConvertOptions& options,
-                              Context& context)
+                              SurfaceSampleSet& samples, const NearestPlace& nearest,
+                              const ConvertOptions& options, Context& context)
 {
     const Result<SplineNetwork> network =
         build_spline_network(complex, options.spline, corner_angles(charts));
     if (!network)
         return network.error();
-    return fit_network(*network, samples, options.fit, context);
+    return fit_network(*network, samples, options.fit, context, nearest);
 }
 
 //! The edge that is longest over the distance of its ends.
@@ -403,8 +403,9 @@ Result<ConvertedComponent> convert_component(const MeshComponent& component, Dom
             fit_options.fit.least_deviation = data->least_deviation;
             fit_options.fit.noise = data->noise;
         }
-        Result<FitResult> fitted =
-            fit_samples(result.domain.complex, *charts, *samples, fit_options, context);
+        Result<FitResult> fitted = fit_samples(
+            result.domain.complex, *charts, *samples,
+            data ? NearestPlace() : nearest_place(*unit, context), fit_options, context);
         if (!fitted)
             return fitted.error();
         fit = std::move(*fitted);

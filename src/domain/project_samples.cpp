@@ -79,6 +79,17 @@ private:
 
 } // namespace
 
+NearestPlace nearest_place(const ManifoldMesh& source, const Context& context)
+{
+    return [&source, closest = ClosestPoint(source, &context)](
+               const Vec3& point, const Vec3& along) -> std::optional<NearPlace> {
+        const ClosestPoint::Hit hit = closest.query_facing(point, along);
+        if (hit.where.face == invalid_index)
+            return std::nullopt;
+        return NearPlace{hit.position, normalized(source.area_vector(hit.where.face))};
+    };
+}
+
 Result<std::vector<SourcePoint>> closest_places(const ManifoldMesh& source,
                                                 const std::vector<Vec3>& points, Context& context)
 {

@@ -25,6 +25,8 @@ constexpr double mu_factor = 0.1;
 constexpr double mu_floor = 1e-5;
 //! The first solve and four corrections, as \cite eck_hoppe_1996 used.
 constexpr int least_rounds = 5;
+//! Gaps between samples are filled from the third round on: before that they slide far.
+constexpr int first_with_gaps = 2;
 //! Fairness falls by this a round.
 const double fairness_decay = std::sqrt(0.1);
 //! Samples of a quad are farther away than noise explains when they are by so many standard
@@ -543,6 +545,9 @@ Status FitLoop::run()
         }
         if (tangent)
             mu = std::max(mu_floor, mu_factor * mu);
+        if (round >= first_with_gaps)
+            if (const auto error = fill_gaps(state))
+                return error;
     }
     if (const auto error = unfold(state, now()))
         return error;

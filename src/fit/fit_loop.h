@@ -25,6 +25,7 @@ public:
     std::vector<Vec3> normals;  //!< Unit normals of the source; may be empty.
     std::vector<char> on_curve; //!< As in SurfaceSampleSet.
     double emphasis = 0.0;      //!< As in FitOptions.
+    NearestPlace nearest;       //!< May be empty.
     // In and out.
     std::vector<DomainPoint> where;
     // Out.
@@ -84,6 +85,8 @@ private:
     //! rounds hardly unfold. Parameters whose speed varies much make surfaces of few pieces
     //! overshoot. Ends: a quad is raised at most most_raises times, and brought back once.
     Status raise_at_folds(State& state);
+    //! Adds samples where those there were have slid away. Errors: cancelled.
+    Status fill_gaps(State& state);
     //! Unfolds quads that fold after the last round, one by one, by more fairness there while all
     //! others keep their places, and adds a round to the summary. No quad gets farther from its
     //! samples than the farthest was, or where there is emphasis than twice that or it was.

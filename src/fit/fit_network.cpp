@@ -68,7 +68,8 @@ std::optional<Error> FitOptions::check() const
 }
 
 Result<FitResult> fit_network(const SplineNetwork& network, SurfaceSampleSet& samples,
-                              const FitOptions& options, Context& context)
+                              const FitOptions& options, Context& context,
+                              const NearestPlace& nearest)
 {
     if (const auto error = options.check())
         return *error;
@@ -103,6 +104,13 @@ Result<FitResult> fit_network(const SplineNetwork& network, SurfaceSampleSet& sa
     loop.where = samples.domain;
     loop.normals = samples.normals;
     loop.on_curve = samples.on_curve;
+    if (nearest)
+        loop.nearest = [&](const Vec3& p, const Vec3& along) {
+            std::optional<NearPlace> found = nearest(extent * p + center, along);
+            if (found)
+                found->position = (found->position - center) / extent;
+            return found;
+        };
     if (const auto error = loop.run())
         return *error;
 
@@ -119,6 +127,7 @@ Result<FitResult> fit_network(const SplineNetwork& network, SurfaceSampleSet& sa
     }
     result.unknowns = reduced->expand(loop.unknowns);
     result.surface = SplineSurface(network, result.unknowns);
+    loop.where.resize(samples.size()); // Without those of gaps.
     samples.domain = std::move(loop.where);
     return result;
 }

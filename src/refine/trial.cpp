@@ -157,7 +157,10 @@ Result<Trial> make_trial(const FitTarget& target, QuadDomain domain,
         how.noise = target.points->noise;
         how.least_deviation = std::max(target.points->least_deviation, options.tolerance);
     }
-    Result<FitResult> fit = fit_network(*network, samples->all, how, context);
+    // Points are noisy, and what is between them is unknown.
+    Result<FitResult> fit =
+        fit_network(*network, samples->all, how, context,
+                    target.points == nullptr ? nearest_place(source, context) : NearestPlace());
     if (!fit)
         return fit.error();
     trial.fit = std::move(*fit);

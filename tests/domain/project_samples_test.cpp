@@ -111,5 +111,26 @@ TEST(AnchorSamples, are_added_where_a_piece_has_no_sample_and_nowhere_else)
     EXPECT_EQ(full->size(), before);
 }
 
+TEST(NearestPlace, is_on_the_side_of_a_thin_wall_that_looks_along_the_direction)
+{
+    // Two squares, a hundredth apart, that look away from each other.
+    const Vec3 corners[4] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    std::vector<Vec3> positions;
+    for (const double z : {0.0, -0.01})
+        for (const Vec3& c : corners)
+            positions.push_back(c + Vec3{0, 0, z});
+    const auto wall = ManifoldMesh::build(positions, {{0, 1, 2}, {0, 2, 3}, {4, 6, 5}, {4, 7, 6}});
+    ASSERT_TRUE(wall.ok()) << wall.error().message;
+    const NearestPlace nearest = nearest_place(*wall, Context());
+    const auto above = nearest({0.3, 0.4, 0.001}, {0, 0.6, 0.8});
+    const auto below = nearest({0.3, 0.4, 0.001}, {0, 0.6, -0.8});
+    ASSERT_TRUE(above && below);
+    EXPECT_LT(norm(above->position - Vec3{0.3, 0.4, 0}), 1e-15);
+    EXPECT_EQ(above->normal, (Vec3{0, 0, 1}));
+    EXPECT_LT(norm(below->position - Vec3{0.3, 0.4, -0.01}), 1e-15);
+    EXPECT_EQ(below->normal, (Vec3{0, 0, -1}));
+    EXPECT_FALSE(nearest({0.3, 0.4, 0.001}, {1, 0, 0}));
+}
+
 } // namespace
 } // namespace bot2nurbs::test
