@@ -25,6 +25,12 @@ constexpr std::size_t patience = 3, tangent_patience = 2;
 // Of the edges of a domain after a cut. A second pass makes no fewer patches.
 constexpr int straightening_passes = 1;
 
+// With no more patches than this beyond the tolerance, and those by no more than this factor, a fit
+// to the places that the proof found may do; so often for one domain, as long as it helps.
+constexpr Index most_near_misses = 2;
+constexpr double near_miss = 1.5;
+constexpr int most_repeats = 3;
+
 double now()
 {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
@@ -76,6 +82,14 @@ Result<std::optional<RefinementEnd>> cut(const ManifoldMesh& source, const Trial
     return End();
 }
 
+// The places where the proof has found the distance largest, one a side, as far as they are beyond.
+void add_worst(const HausdorffBound& bound, double tolerance, std::vector<SourcePoint>& places)
+{
+    for (const OneSidedDistance* side : {&bound.surface_to_source, &bound.source_to_surface})
+        if (side->lower > tolerance)
+            places.push_back(side->worst.source);
+}
+
 } // namespace
 
 const char* name(RefinementEnd end)
@@ -116,12 +130,13 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
 {
     if (const auto error = options.check())
         return *error;
-    const FitTarget target(source, points, options.tolerance);
+    FitTarget target(source, points, options.tolerance);
     ToleranceOptions current = options;
     ToleranceFit result;
     Trial best;
     QuadDomain domain = std::move(start);
     std::size_t first = 0; // Round with the rows of now.
+    int repeats = 0;       // Of fits to the domain of now.
     const auto next_trial = [&]() -> Result<Trial> {
         if (!tried)
             return make_trial(target, std::move(domain), current, context);
@@ -153,13 +168,25 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
         const bool tangent = current.fit.rows == DistanceRows::tangent;
         const bool stuck = stalled(result.rounds, first, tangent ? tangent_patience : patience);
         const bool near = trial.within || (points != nullptr && trial.beyond() == 0);
+        const std::size_t count = result.rounds.size();
+        const bool repeat = points == nullptr && !near && trial.exceeding() > 0 &&
+                            trial.exceeding() <= most_near_misses &&
+                            trial.distance() <= near_miss * options.tolerance &&
+                            repeats < most_repeats && !reached &&
+                            (repeats == 0 || result.rounds[count - 1].distance.lower <
+                                                 result.rounds[count - 2].distance.lower);
         // Within the tolerance only folds are left to cut: as long as that makes fewer of them.
         if (near ? trial.folded() == 0 || !is_best : reached) {
             end = RefinementEnd::tolerance_met;
+        } else if (repeat) {
+            add_worst(trial.bound, options.tolerance, target.hard_places);
+            domain = trial.domain;
+            ++repeats;
         } else if (stuck && tangent && !near) {
             current.fit.rows = DistanceRows::point;
             first = result.rounds.size();
             domain = is_best ? trial.domain : best.domain;
+            repeats = 0;
         } else if (stuck && !near) {
             end = RefinementEnd::stalled;
         } else {
@@ -168,6 +195,7 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
             if (!failed)
                 return failed.error();
             end = *failed;
+            repeats = 0;
         }
         if (is_best)
             best = std::move(trial);

@@ -60,6 +60,39 @@ Index count(const std::vector<PatchError>& patches, const Condition& condition)
     return static_cast<Index>(std::count_if(patches.begin(), patches.end(), condition));
 }
 
+// Adds places of the source as samples, with this many times the mean weight of those in their
+// quad, for there are few of them.
+Status add_hard_places(const ManifoldMesh& source, const std::vector<QuadChart>& charts,
+                       const std::vector<SourcePoint>& places, SurfaceSampleSet& samples,
+                       Context& context)
+{
+    constexpr double emphasis = 4.0;
+    if (places.empty())
+        return {};
+    std::vector<double> weight(charts.size(), 0.0), count(charts.size(), 0.0);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        weight[samples.domain[i].quad] += samples.weights[i];
+        count[samples.domain[i].quad] += 1.0;
+    }
+    PointData data;
+    data.source = places;
+    for (const SourcePoint& p : places)
+        data.positions.push_back(source.at(p));
+    data.weights.assign(places.size(), 1.0);
+    const Result<SurfaceSampleSet> added = project_samples(source, charts, data, context);
+    if (!added)
+        return added.error();
+    for (std::size_t i = 0; i < added->size(); ++i) {
+        const Index quad = added->domain[i].quad;
+        samples.positions.push_back(added->positions[i]);
+        samples.normals.push_back(normalized(source.area_vector(added->source[i].face)));
+        samples.weights.push_back(emphasis * weight[quad] / count[quad]);
+        samples.source.push_back(added->source[i]);
+        samples.domain.push_back(added->domain[i]);
+    }
+    return {};
+}
+
 struct FitSamples {
     SurfaceSampleSet all;
     Index anchors = 0;
@@ -86,6 +119,9 @@ Result<FitSamples> samples_of(const FitTarget& target, const QuadComplex& comple
     result.first.assign(complex.quad_count(), result.all.size());
     for (std::size_t i = result.all.size(); i-- > 0;)
         result.first[result.all.domain[i].quad] = i;
+    if (Status failed =
+            add_hard_places(target.source, charts, target.hard_places, result.all, context))
+        return *failed;
     add_curve_samples(target.source, complex, charts, options.samples, result.all);
     return result;
 }

@@ -49,6 +49,9 @@ struct FitTarget {
     //! Patches that are anywhere farther than this from the source are cut: with points the limit
     //! and what they are away from the mesh through them.
     double surface_limit;
+    //! Places of the source that proofs have found beyond: samples of every further fit. Not with
+    //! points.
+    std::vector<SourcePoint> hard_places;
 };
 
 //! Fits a surface to a domain and measures its distance from the target at the samples alone:

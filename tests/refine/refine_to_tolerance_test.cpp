@@ -360,29 +360,60 @@ TEST(LayoutForTolerance, a_smaller_tolerance_starts_from_more_patches_up_to_the_
     EXPECT_GT(patches(1e-2, 2), 2u); // No layout has so few.
 }
 
+//! A tolerance between what the samples show of a domain and what is true; 0: none was found.
+double tolerance_that_samples_miss(const ManifoldMesh& mesh, const QuadDomain& domain)
+{
+    Context context;
+    double tolerance = 0.05;
+    for (int i = 0; i < 60; ++i) {
+        const FitTarget target(mesh, nullptr, tolerance);
+        Result<Trial> trial = make_trial(target, domain, options_for(tolerance), context);
+        EXPECT_TRUE(trial);
+        if (trial->exceeding() == 0) {
+            EXPECT_FALSE(prove_trial(target, *trial, context));
+            if (trial->exceeding() > 0)
+                return tolerance;
+        }
+        // From twice what is known of it downwards.
+        tolerance = std::min(0.97 * tolerance, 2.0 * trial->distance());
+    }
+    return 0.0;
+}
+
+Result<LayoutResult> layout_of_24(const ManifoldMesh& mesh)
+{
+    Context context;
+    LayoutOptions coarse;
+    coarse.patches = 24;
+    return build_layout(mesh, coarse, context);
+}
+
+TEST(RefineToTolerance, what_only_the_proof_saw_is_fitted_before_anything_is_cut)
+{
+    const ManifoldMesh ball = wavy_ball(4.0);
+    const Result<LayoutResult> first = layout_of_24(ball);
+    ASSERT_TRUE(first);
+    const double tolerance = tolerance_that_samples_miss(ball, first->domain);
+    ASSERT_GT(tolerance, 0.0);
+    Context context;
+    const auto fit =
+        refine_to_tolerance(ball, first->domain, options_for(tolerance), nullptr, context);
+    ASSERT_TRUE(fit);
+    ASSERT_GE(fit->rounds.size(), 2u);
+    ASSERT_LE(fit->rounds[0].exceeding, 2u);
+    EXPECT_EQ(fit->rounds[1].patches, fit->rounds[0].patches);
+    EXPECT_LT(fit->rounds[1].distance.lower, fit->rounds[0].distance.lower);
+    EXPECT_EQ(fit->termination, RefinementEnd::tolerance_met);
+}
+
 TEST(LayoutForTolerance, a_layout_that_is_within_at_its_samples_alone_is_not_taken_for_within)
 {
     const ManifoldMesh ball = wavy_ball(4.0);
     Context context;
-    LayoutOptions coarse;
-    coarse.patches = 24;
-    const Result<LayoutResult> first = build_layout(ball, coarse, context);
+    const Result<LayoutResult> first = layout_of_24(ball);
     ASSERT_TRUE(first);
-    // A tolerance between what the samples show of the coarsest layout and what is true.
-    double tolerance = 0.05;
-    bool missed = false;
-    for (int i = 0; i < 60 && !missed; ++i) {
-        const FitTarget target(ball, nullptr, tolerance);
-        Result<Trial> trial = make_trial(target, first->domain, options_for(tolerance), context);
-        ASSERT_TRUE(trial);
-        if (trial->exceeding() == 0) {
-            ASSERT_FALSE(prove_trial(target, *trial, context));
-            missed = trial->exceeding() > 0;
-        }
-        if (!missed) // From twice what is known of it downwards.
-            tolerance = std::min(0.97 * tolerance, 2.0 * trial->distance());
-    }
-    ASSERT_TRUE(missed);
+    const double tolerance = tolerance_that_samples_miss(ball, first->domain);
+    ASSERT_GT(tolerance, 0.0);
     const Result<TriedLayout> start =
         layout_for_tolerance(ball, {}, options_for(tolerance), nullptr, context);
     ASSERT_TRUE(start);
