@@ -101,9 +101,10 @@ double noise_reach(double noise, std::size_t count);
 
 //! Fits a spline surface within a tolerance of a mesh, on a domain refined where it must be: fit,
 //! bound the distance of every patch, cut the patches that are beyond, close the marks, cut the
-//! domain, and fit again. How, and why it ends: docs/algorithms/refinement.md. Cost: that of the
-//! last fit times a small number, as the patches grow by a share each round. Same result for any
-//! number of threads. \cite eck_hoppe_1996
+//! domain, and fit again; where little is beyond, fit again to what only the bound saw before that.
+//! How, and why it ends: docs/algorithms/refinement.md. Cost: that of the last fit times a small
+//! number, as the patches grow by a share each round. Same result for any number of threads. \cite
+//! eck_hoppe_1996
 //!
 //! With `points` the surface is fitted to them, robustly, and the distance is theirs from it, one
 //! way; patches all of whose points are within noise_reach() are not cut, as more patches would

@@ -28,7 +28,7 @@ constexpr int straightening_passes = 1;
 // With no more patches than this beyond the tolerance, and those by no more than this factor, a fit
 // to the places that the proof found may do; so often for one domain, as long as it helps.
 constexpr Index most_near_misses = 2;
-constexpr double near_miss = 1.5;
+constexpr double near_miss_ratio = 1.5;
 constexpr int most_repeats = 3;
 
 double now()
@@ -90,6 +90,45 @@ void add_worst(const HausdorffBound& bound, double tolerance, std::vector<Source
             places.push_back(side->worst.source);
 }
 
+// Whether so little is beyond the tolerance that a fit to the very places may do.
+bool near_miss(const Trial& trial, double tolerance)
+{
+    const Index exceeding = trial.exceeding();
+    return exceeding > 0 && exceeding <= most_near_misses &&
+           trial.distance() <= near_miss_ratio * tolerance;
+}
+
+// Where refinement stands after a round.
+struct Progress {
+    bool reached = false; // A round before was within the tolerance.
+    bool is_best = false;
+    bool tangent = false;  // Rows of the fit.
+    std::size_t first = 0; // Round with these rows.
+    int repeats = 0;       // Of fits to the domain of now.
+};
+
+enum class Step { end, stall, repeat, change_rows, cut };
+
+Step next_step(const std::vector<RefinementRound>& rounds, const FitTarget& target,
+               const Trial& trial, const Progress& now)
+{
+    const bool near = trial.within || (target.points != nullptr && trial.beyond() == 0);
+    // Within the tolerance only folds are left to cut: as long as that makes fewer of them.
+    if (near)
+        return trial.folded() == 0 || !now.is_best ? Step::end : Step::cut;
+    if (now.reached)
+        return Step::end;
+    const auto distance = [&](std::size_t ago) {
+        return rounds[rounds.size() - 1 - ago].distance.lower;
+    };
+    if (target.points == nullptr && near_miss(trial, target.tolerance) &&
+        now.repeats < most_repeats && (now.repeats == 0 || distance(0) < distance(1)))
+        return Step::repeat;
+    if (!stalled(rounds, now.first, now.tangent ? tangent_patience : patience))
+        return Step::cut;
+    return now.tangent ? Step::change_rows : Step::stall;
+}
+
 } // namespace
 
 const char* name(RefinementEnd end)
@@ -135,8 +174,7 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
     ToleranceFit result;
     Trial best;
     QuadDomain domain = std::move(start);
-    std::size_t first = 0; // Round with the rows of now.
-    int repeats = 0;       // Of fits to the domain of now.
+    Progress progress;
     const auto next_trial = [&]() -> Result<Trial> {
         if (!tried)
             return make_trial(target, std::move(domain), current, context);
@@ -160,48 +198,38 @@ Result<ToleranceFit> refine_to_tolerance(const ManifoldMesh& source, QuadDomain 
             if (Status failed = prove_trial(target, trial, context))
                 return *failed;
         result.rounds.push_back(describe(trial, now() - begin));
-        const bool reached = result.rounds.size() > 1 && result.rounds[result.best].beyond == 0;
-        const bool is_best = better(result.rounds, result.best);
-        if (is_best)
+        progress.reached = result.rounds.size() > 1 && result.rounds[result.best].beyond == 0;
+        progress.is_best = better(result.rounds, result.best);
+        progress.tangent = current.fit.rows == DistanceRows::tangent;
+        if (progress.is_best)
             result.best = static_cast<Index>(result.rounds.size() - 1);
 
-        const bool tangent = current.fit.rows == DistanceRows::tangent;
-        const bool stuck = stalled(result.rounds, first, tangent ? tangent_patience : patience);
-        const bool near = trial.within || (points != nullptr && trial.beyond() == 0);
-        const std::size_t count = result.rounds.size();
-        const bool repeat = points == nullptr && !near && trial.exceeding() > 0 &&
-                            trial.exceeding() <= most_near_misses &&
-                            trial.distance() <= near_miss * options.tolerance &&
-                            repeats < most_repeats && !reached &&
-                            (repeats == 0 || result.rounds[count - 1].distance.lower <
-                                                 result.rounds[count - 2].distance.lower);
-        // Within the tolerance only folds are left to cut: as long as that makes fewer of them.
-        if (near ? trial.folded() == 0 || !is_best : reached) {
+        const Step step = next_step(result.rounds, target, trial, progress);
+        progress.repeats = step == Step::repeat ? progress.repeats + 1 : 0;
+        if (step == Step::end) {
             end = RefinementEnd::tolerance_met;
-        } else if (repeat) {
+        } else if (step == Step::stall) {
+            end = RefinementEnd::stalled;
+        } else if (step == Step::repeat) {
             add_worst(trial.bound, options.tolerance, target.hard_places);
             domain = trial.domain;
-            ++repeats;
-        } else if (stuck && tangent && !near) {
+        } else if (step == Step::change_rows) {
             current.fit.rows = DistanceRows::point;
-            first = result.rounds.size();
-            domain = is_best ? trial.domain : best.domain;
-            repeats = 0;
-        } else if (stuck && !near) {
-            end = RefinementEnd::stalled;
+            progress.first = result.rounds.size();
+            domain = progress.is_best ? trial.domain : best.domain;
         } else {
             Result<std::optional<RefinementEnd>> failed =
                 cut(source, trial, options, domain, context);
             if (!failed)
                 return failed.error();
             end = *failed;
-            repeats = 0;
         }
-        if (is_best)
+        if (progress.is_best)
             best = std::move(trial);
         if (end)
             result.termination = *end;
     }
+    // Whatever ended it: an earlier round may have been within.
     if (best.within)
         result.termination = RefinementEnd::tolerance_met;
     else if (points != nullptr && best.beyond() == 0)
