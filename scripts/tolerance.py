@@ -21,7 +21,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 DEFAULT = (
     "bunny_11k spot kitten_9k fertility_12k hand_camille 3holes rocker_arm armadillo_15k wolf "
-    "knot1 femur_g2 igea_134k_tristrips"
+    "knot1 bone_femur femur_g2 igea_134k_tristrips"
 ).split()
 FOLDERS = ("smooth", "genus", "mechanical")
 MAX_ANGLE = 1e-8  # Degrees: rounding of exact joins.
