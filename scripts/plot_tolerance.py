@@ -37,6 +37,7 @@ def main():
     table = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs/results/tolerance.md"
     picture = Path(sys.argv[2]) if len(sys.argv) > 2 else ROOT / "docs/images/tolerance.png"
     figure, axes = plt.subplots(figsize=(8.0, 5.5))
+    axes.set_prop_cycle(color=plt.get_cmap("tab20").colors)
     markers = "osD^v<>PX*hd"
     for marker, (model, points) in zip(markers * 4, sorted(read_runs(table).items())):
         x, y = zip(*sorted(points))
